@@ -1,0 +1,144 @@
+!> The program: reads the command line, runs a job, turns errors into messages and exit codes.
+program mpm3d
+  use, intrinsic :: iso_c_binding, only: c_int
+  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use mpm_build_info, only: build_type, compiler, revision, version
+  use mpm_command_line, only: command_line_t, read_command_line, usage
+  use mpm_configurator, only: configure
+  use mpm_describe_text, only: describe_text, list_line
+  use mpm_description, only: description_t
+  use mpm_errors, only: err_usage, error_t, raise
+  use mpm_job, only: job_t
+  use mpm_job_report, only: report_job
+  use mpm_monitor, only: monitor_t, quiet
+  use mpm_registry, only: describe_classes, role_names
+  use mpm_strings, only: append_text, nearest_name, string_t
+  use omp_lib, only: omp_get_max_threads
+  implicit none
+
+  interface
+    !> C `exit`: end the program with a status that is not known at compile time.
+    subroutine c_exit(status) bind(c, name='exit')
+      import :: c_int
+      implicit none
+      !> Exit status.
+      integer(c_int), intent(in), value :: status
+    end subroutine c_exit
+  end interface
+
+  type(command_line_t) :: command
+  type(error_t), allocatable :: error
+
+  call read_command_line(command, error)
+  if (.not. allocated(error)) call act(command, error)
+  flush (output_unit)
+  if (allocated(error)) then
+    write (error_unit, '(a)') error%text()
+    call c_exit(int(error%code, c_int))
+  end if
+
+contains
+
+  !> Do what the command line asks for.
+  subroutine act(command, error)
+    !> The command line.
+    type(command_line_t), intent(in) :: command
+    !> What went wrong.
+    type(error_t), allocatable, intent(out) :: error
+
+    select case (command%action)
+    case ('help')
+      write (output_unit, '(a)') usage()
+    case ('version')
+      write (output_unit, '(a)') 'mpm3d '//version//' ('//revision//', '//compiler//', '// &
+        build_type//')'
+    case ('list')
+      call list_classes(command%subject, error)
+    case ('describe')
+      call describe_class(command%subject, error)
+    case default
+      call run_job(command, error)
+    end select
+  end subroutine act
+
+  !> Run or check a config.
+  subroutine run_job(command, error)
+    !> The command line.
+    type(command_line_t), intent(in) :: command
+    !> Bad input, a simulation that went bad, or failed output.
+    type(error_t), allocatable, intent(out) :: error
+    type(job_t), allocatable :: job
+    type(monitor_t) :: monitor
+
+    allocate (job)
+    monitor%verbosity = command%verbosity
+    call configure(command%config, command%overrides, job, error)
+    if (allocated(error)) return
+    if (command%threads > 0) job%model%threads = command%threads
+    if (job%model%threads == 0) job%model%threads = omp_get_max_threads()
+    call job%start(error)
+    if (allocated(error)) return
+    if (command%verbosity > quiet) call report_job(job)
+    if (command%action == 'check') return
+    call job%run(monitor, error)
+  end subroutine run_job
+
+  !> Print the classes of a role, or of all roles.
+  subroutine list_classes(role, error)
+    !> Role in singular or plural; '' for all.
+    character(*), intent(in) :: role
+    !> No such role.
+    type(error_t), allocatable, intent(out) :: error
+    type(string_t), allocatable :: roles(:)
+    type(description_t), allocatable :: descriptions(:)
+    integer :: i, j
+
+    if (len(role) > 0) then
+      allocate (roles(1))
+      roles(1)%text = role
+    else
+      call role_names(roles)
+    end if
+    do i = 1, size(roles)
+      call describe_classes(roles(i)%text, descriptions, error)
+      if (allocated(error)) then
+        error%code = err_usage
+        return
+      end if
+      write (output_unit, '(a)') roles(i)%text
+      do j = 1, size(descriptions)
+        write (output_unit, '(a)') list_line(descriptions(j))
+      end do
+    end do
+  end subroutine list_classes
+
+  !> Print what a class says of itself.
+  subroutine describe_class(name, error)
+    !> Class name.
+    character(*), intent(in) :: name
+    !> No such class.
+    type(error_t), allocatable, intent(out) :: error
+    type(string_t), allocatable :: roles(:), known(:)
+    type(description_t), allocatable :: descriptions(:)
+    character(:), allocatable :: hint
+    integer :: i, j
+
+    call role_names(roles)
+    allocate (known(0))
+    do i = 1, size(roles)
+      call describe_classes(roles(i)%text, descriptions, error)
+      if (allocated(error)) return
+      do j = 1, size(descriptions)
+        if (descriptions(j)%name == name) then
+          write (output_unit, '(a)') describe_text(descriptions(j))
+          return
+        end if
+        call append_text(known, descriptions(j)%name)
+      end do
+    end do
+    hint = nearest_name(name, known)
+    if (len(hint) > 0) hint = 'did you mean "'//hint//'"?   '
+    call raise(error, err_usage, 'there is no class "'//name//'"', hint=hint//'(mpm3d --list)')
+  end subroutine describe_class
+
+end program mpm3d

@@ -1,0 +1,62 @@
+!> Finding a body among the bodies of a job.
+module mpm_body_list
+  use mpm_body, only: body_slot_t
+  use mpm_errors, only: error_t
+  use mpm_properties, only: properties_t
+  use mpm_strings, only: nearest_name, string_t, to_text
+  implicit none
+  private
+  public :: find_body
+
+contains
+
+  !> The body that a property names, or gives by its number.
+  subroutine find_body(bodies, properties, name_key, id_key, position, error)
+    !> All bodies of the job.
+    type(body_slot_t), intent(in) :: bodies(:)
+    !> Checked properties.
+    type(properties_t), intent(in) :: properties
+    !> Property that holds the name.
+    character(*), intent(in) :: name_key
+    !> Property that holds the number.
+    character(*), intent(in) :: id_key
+    !> Position in the list of bodies.
+    integer, intent(out) :: position
+    !> Neither is given, or there is no such body.
+    type(error_t), allocatable, intent(out) :: error
+    type(string_t) :: known(size(bodies))
+    character(:), allocatable :: name, list, near
+    integer :: i
+
+    position = 0
+    list = ''
+    do i = 1, size(bodies)
+      known(i)%text = bodies(i)%body%name
+      if (i > 1) list = list//', '
+      list = list//'"'//known(i)%text//'"'
+    end do
+    if (properties%given(name_key)) then
+      name = properties%string(name_key)
+      do i = 1, size(bodies)
+        if (known(i)%text == name) position = i
+      end do
+      if (position > 0) return
+      near = nearest_name(name, known)
+      if (len(near) > 0) then
+        near = 'did you mean "'//near//'"?'
+      else
+        near = 'bodies of this config: '//list
+      end if
+      call properties%reject(name_key, 'there is no body "'//name//'"', error, near)
+    else if (properties%given(id_key)) then
+      position = properties%integer(id_key) + 1
+      if (position <= size(bodies)) return
+      call properties%reject(id_key, 'there is no body number '//to_text(position - 1), error, &
+                             'bodies are numbered from 0 in the order of the config: '//list)
+    else
+      call properties%reject(name_key, 'a contact needs the names of its two bodies', error, &
+                             'str-properties = {"first", "second"}; bodies of this config: '//list)
+    end if
+  end subroutine find_body
+
+end module mpm_body_list

@@ -1,0 +1,263 @@
+!> The faces of a Cartesian grid, as the boundaries on them see it.
+!!
+!! Faces are numbered -x, +x, -y, +y, -z, +z from 1. Loops run over the nodes that a face shares
+!! with the window of a body, never over the grid.
+module mpm_box_faces
+  use mpm_cartesian_grid, only: cartesian_grid_t
+  use mpm_errors, only: err_input, error_t, raise
+  use mpm_grid, only: grid_t
+  use mpm_kinds, only: wp
+  use mpm_kinematics, only: kinematics_t, type_axisymmetric
+  use mpm_nodes, only: nodes_t
+  use mpm_window, only: intersect, window_t
+  implicit none
+  private
+  public :: box_faces_t
+  public :: axis_names, axis_of, face_names, is_lower
+
+  !> Names of the directions.
+  character(1), parameter :: axis_names(3) = ['x', 'y', 'z']
+  !> Names of the faces in their order.
+  character(7), parameter :: face_names(6) = ['x_lower', 'x_upper', 'y_lower', 'y_upper', &
+                                              'z_lower', 'z_upper']
+
+  !> Faces of the box of a Cartesian grid.
+  type :: box_faces_t
+    !> Component counts of the job.
+    type(kinematics_t) :: kin
+    !> Number of faces: two for each dimension.
+    integer :: n = 0
+    !> Index of the last node in each direction.
+    integer :: last(3) = 0
+    !> Spacing of the nodes. [m]
+    real(wp) :: h(3) = 1.0_wp
+    !> Lower corner. [m]
+    real(wp) :: lower(3) = 0.0_wp
+    !> Upper corner. [m]
+    real(wp) :: upper(3) = 0.0_wp
+    !> Directions in which the grid is periodic.
+    logical :: periodic(3) = .false.
+  contains
+    !> Take the box from the grid.
+    procedure :: init => box_faces_init
+    !> Nodes of a face inside a window.
+    procedure :: part => box_faces_part
+    !> Whether a node is on a face.
+    procedure :: holds => box_faces_holds
+    !> First face that a node is on.
+    procedure :: first => box_faces_first
+    !> Integral of a node's function over a face.
+    procedure :: area => box_faces_area
+    !> Fix components of velocity, momentum and force on a face.
+    procedure :: fix => box_faces_fix
+    !> Mark components as fixed in a mask for output.
+    procedure :: mark => box_faces_mark
+  end type box_faces_t
+
+contains
+
+  !> Direction normal to a face.
+  pure function axis_of(face) result(axis)
+    !> Face, 1 to 6.
+    integer, intent(in) :: face
+    !> Direction, 1 to 3.
+    integer :: axis
+
+    axis = (face + 1)/2
+  end function axis_of
+
+  !> Whether a face is the lower one of its direction.
+  pure function is_lower(face) result(lower)
+    !> Face, 1 to 6.
+    integer, intent(in) :: face
+    !> False for an upper face.
+    logical :: lower
+
+    lower = mod(face, 2) == 1
+  end function is_lower
+
+  !> Take the box from the grid.
+  subroutine box_faces_init(self, grid, class_name, error)
+    !> The faces.
+    class(box_faces_t), intent(inout) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Class of the boundary, for the message.
+    character(*), intent(in) :: class_name
+    !> The grid is not Cartesian.
+    type(error_t), allocatable, intent(out) :: error
+
+    select type (grid)
+    class is (cartesian_grid_t)
+      self%kin = grid%kin
+      self%n = 2*grid%kin%dim
+      self%last = grid%n_cells
+      self%h = grid%h
+      self%lower = grid%lower
+      self%upper = grid%upper
+      self%periodic = grid%periodic
+    class default
+      call raise(error, err_input, 'the boundary class '//class_name//' needs a Cartesian grid', &
+                 hint='its walls are the faces of a box; use a Cartesian grid or another boundary')
+    end select
+  end subroutine box_faces_init
+
+  !> Nodes of a face inside a window; empty when there are none.
+  pure function box_faces_part(self, face, window) result(part)
+    !> The faces.
+    class(box_faces_t), intent(in) :: self
+    !> Face, 1 to `n`.
+    integer, intent(in) :: face
+    !> Nodes that have memory.
+    type(window_t), intent(in) :: window
+    !> Nodes of both.
+    type(window_t) :: part
+    type(window_t) :: whole
+    integer :: axis
+
+    axis = axis_of(face)
+    whole%n = self%last + 1
+    whole%n(axis) = 1
+    if (.not. is_lower(face)) whole%lo(axis) = self%last(axis)
+    part = intersect(whole, window)
+  end function box_faces_part
+
+  !> Whether a node is on a face.
+  pure function box_faces_holds(self, face, node) result(holds)
+    !> The faces.
+    class(box_faces_t), intent(in) :: self
+    !> Face, 1 to `n`.
+    integer, intent(in) :: face
+    !> Grid indices, from 0.
+    integer, intent(in) :: node(3)
+    !> Whether it is.
+    logical :: holds
+    integer :: axis
+
+    axis = axis_of(face)
+    holds = node(axis) == merge(0, self%last(axis), is_lower(face))
+  end function box_faces_holds
+
+  !> First face that a node is on, by which nodes of several faces are visited once.
+  pure function box_faces_first(self, node) result(face)
+    !> The faces.
+    class(box_faces_t), intent(in) :: self
+    !> Grid indices, from 0.
+    integer, intent(in) :: node(3)
+    !> Face; 0 inside the box.
+    integer :: face
+
+    do face = 1, self%n
+      if (self%holds(face, node)) return
+    end do
+    face = 0
+  end function box_faces_first
+
+  !> Integral of a node's hat function over a face.
+  !!
+  !! A unit area in TYPE 1, a line of unit depth in TYPE 2 and 5; in TYPE 4 per radian: R dz on the
+  !! faces of constant r, r dr on those of constant z.
+  pure function box_faces_area(self, face, node) result(area)
+    !> The faces.
+    class(box_faces_t), intent(in) :: self
+    !> Face, 1 to `n`.
+    integer, intent(in) :: face
+    !> Grid indices of a node of the face, from 0.
+    integer, intent(in) :: node(3)
+    !> Area. [m2]
+    real(wp) :: area
+    real(wp) :: length
+    integer :: axis, d
+
+    axis = axis_of(face)
+    area = 1.0_wp
+    if (self%kin%sim_type == type_axisymmetric .and. axis == 1) then
+      area = merge(self%lower(1), self%upper(1), is_lower(face))
+    end if
+    do d = 1, self%kin%dim
+      if (d == axis) cycle
+      length = self%h(d)
+      if (node(d) == 0 .or. node(d) == self%last(d)) length = 0.5_wp*length
+      area = area*length
+      if (self%kin%sim_type == type_axisymmetric .and. d == 1) then
+        area = area*mean_radius(self, node(1))
+      end if
+    end do
+  end function box_faces_area
+
+  !> Mean of r weighted with a node's hat function.
+  pure function mean_radius(self, i) result(r)
+    !> The faces.
+    class(box_faces_t), intent(in) :: self
+    !> Index of the node along r, from 0.
+    integer, intent(in) :: i
+    !> The mean. [m]
+    real(wp) :: r
+
+    if (i == 0) then
+      r = self%lower(1) + self%h(1)/3.0_wp
+    else if (i == self%last(1)) then
+      r = self%upper(1) - self%h(1)/3.0_wp
+    else
+      r = self%lower(1) + real(i, wp)*self%h(1)
+    end if
+  end function mean_radius
+
+  !> Fix components of velocity, momentum and force on a face.
+  pure subroutine box_faces_fix(self, face, first, last, nodes)
+    !> The faces.
+    class(box_faces_t), intent(in) :: self
+    !> Face, 1 to `n`.
+    integer, intent(in) :: face
+    !> First component.
+    integer, intent(in) :: first
+    !> Last component.
+    integer, intent(in) :: last
+    !> Nodes of the body.
+    class(nodes_t), intent(inout) :: nodes
+    type(window_t) :: part
+    integer :: hi(3), i, j, k, n
+
+    part = self%part(face, nodes%window)
+    hi = part%hi()
+    do k = part%lo(3), hi(3)
+      do j = part%lo(2), hi(2)
+        do i = part%lo(1), hi(1)
+          n = nodes%window%index([i, j, k])
+          nodes%velocity(first:last, n) = 0.0_wp
+          nodes%momentum(first:last, n) = 0.0_wp
+          nodes%force(first:last, n) = 0.0_wp
+        end do
+      end do
+    end do
+  end subroutine box_faces_fix
+
+  !> Mark components as fixed (1) in a mask for output.
+  pure subroutine box_faces_mark(self, face, first, last, window, mask)
+    !> The faces.
+    class(box_faces_t), intent(in) :: self
+    !> Face, 1 to `n`.
+    integer, intent(in) :: face
+    !> First component.
+    integer, intent(in) :: first
+    !> Last component.
+    integer, intent(in) :: last
+    !> Nodes that have memory.
+    type(window_t), intent(in) :: window
+    !> Mask of the window's nodes. (nvel, nn)
+    real(wp), intent(inout) :: mask(:, :)
+    type(window_t) :: part
+    integer :: hi(3), i, j, k
+
+    part = self%part(face, window)
+    hi = part%hi()
+    do k = part%lo(3), hi(3)
+      do j = part%lo(2), hi(2)
+        do i = part%lo(1), hi(1)
+          mask(first:last, window%index([i, j, k])) = 1.0_wp
+        end do
+      end do
+    end do
+  end subroutine box_faces_mark
+
+end module mpm_box_faces

@@ -1,0 +1,286 @@
+!> A wall of its own kind on each face of the grid.
+module mpm_cartesian_box_custom
+  use mpm_boundary, only: boundary_t
+  use mpm_box_faces, only: axis_names, axis_of, box_faces_t, face_names, is_lower
+  use mpm_box_rules, only: apply_rules, node_rules
+  use mpm_box_wall, only: box_wall_t, read_walls, wall_bounded, wall_free, wall_friction, &
+                          wall_traction
+  use mpm_description, only: description_t, types_with_dim
+  use mpm_errors, only: error_t
+  use mpm_field_writer, only: field_writer_t
+  use mpm_grid, only: grid_t
+  use mpm_kinds, only: wp
+  use mpm_nodal_volume, only: nodal_volume
+  use mpm_nodes, only: nodes_t
+  use mpm_points, only: points_t
+  use mpm_properties, only: properties_t
+  use mpm_stencil, only: stencil_t
+  use mpm_window, only: window_t
+  implicit none
+  private
+  public :: cartesian_box_custom_t
+
+  !> One rule for each face, chosen by its code.
+  type, extends(boundary_t) :: cartesian_box_custom_t
+    private
+    !> The faces.
+    type(box_faces_t) :: faces
+    !> What each of them does. (faces%n)
+    type(box_wall_t), allocatable :: walls(:)
+    !> The grid's functions at the points themselves.
+    type(stencil_t) :: stencil
+  contains
+    procedure, nopass :: describe => custom_describe
+    procedure :: init => custom_init
+    procedure :: generate => custom_generate
+    procedure :: apply => custom_apply
+    procedure :: write_fields => custom_write_fields
+  end type cartesian_box_custom_t
+
+contains
+
+  !> Purpose and properties of the class.
+  subroutine custom_describe(description)
+    !> The description.
+    type(description_t), intent(out) :: description
+    character(*), parameter :: nl = new_line('a')
+    integer :: face
+
+    call description%init('boundary', 'CartesianBoxCustom', &
+                          'A wall of its own kind on each face of the grid: free, no slip, free &
+                          &slip, friction, periodic, driven, or loaded by a traction.', &
+                          'Sulsky, Chen and Schreyer, CMAME 118 (1994) 179-196; Coulomb friction &
+                          &as in Bardenhagen, Brackbill and Sulsky, CMAME 187 (2000) 529-541', &
+                          '    boundary-class = "CartesianBoxCustom"'//nl// &
+                          '    boundary-int-props = {1, 1, 2, 4}         # -x, +x, -y, +y'//nl// &
+                          '    boundary-props = {0.3, 1.0, 0.0, 0.0}     # mu; V_x, V_y, -')
+    do face = 1, 6
+      call description%add_integer(trim(face_names(face)), 'wall at the '// &
+                                   trim(merge('lower', 'upper', is_lower(face)))//' '// &
+                                   axis_names(axis_of(face))//' face: -1 free, 0 no slip, 1 free &
+                                   &slip, 2 friction, 3 periodic, 4 driven, 5 traction, 6 driven &
+                                   &with bounded traction', lower=wall_free, upper=wall_bounded, &
+                                   types=types_with_dim(axis_of(face)))
+    end do
+    call description%add_real('values', 'by code', 'what the codes take, face by face: 2: mu [-]; &
+                              &4: velocity V [m/s], 3 entries; 5: traction t [Pa], 3 entries; &
+                              &6: V [m/s] and the largest traction tau_max [Pa], 4 entries', &
+                              any_real=.true., is_list=.true.)
+    call add_notes(description)
+  end subroutine custom_describe
+
+  !> Remarks on the rules, and on what differs from mpm_3d.
+  subroutine add_notes(description)
+    !> The description.
+    type(description_t), intent(inout) :: description
+
+    call description%add_note('Codes 4 and 5 take 3 entries and code 6 takes 4 in every TYPE: &
+                              &first the components that velocities have, for code 6 then &
+                              &tau_max, then entries that are not used.')
+    call description%add_note('Code 2: the normal component is 0; friction is at most mu times &
+                              &the force that stops the body''s own closing motion, forces of &
+                              &contacts left out, and acts on all motion that is left.')
+    call description%add_note('Code 4 holds every component at V. Code 5 loads the part of the &
+                              &face that is filled with points; NaN in place of a component of t &
+                              &fixes that component. Code 6 stops the normal component, then &
+                              &drives the node towards V with at most tau_max.')
+    call description%add_note('Nodes of several faces: faces act in the order x, y, z. Code 0 &
+                              &fixes all components; codes 1 and 2 rule their normal component, &
+                              &code -1 frees it. Codes 4, 5 and 6 replace what earlier &
+                              &directions said, but not where their normal component is fixed; a &
+                              &later code 0 replaces them. So one traction alone acts on an edge &
+                              &of two faces with code 5, that of the later direction.')
+    call description%add_note('Code 3 needs both faces of the direction and a grid that is &
+                              &periodic in it, which moves the points.')
+    call description%add_note('bc_nodal_mask: 0 no rule, 1 fixed, -1 free, 2 friction, 3 &
+                              &periodic, 4, 5, 6 as the code; 2, 4, 5, 6 are negative on upper &
+                              &faces. Nodes without memory show 0.')
+    call description%add_note('mpm_3d lets the friction of one face act on others, uses one mu &
+                              &and one tau_max for all faces, forgets hoop stress in code 2, &
+                              &fixes tangential components in code 6, uses one area for all &
+                              &nodes of codes 5 and 6, and ignores unknown codes.')
+    call description%add_note('Codes 5 and 6 find the filled part with the functions of the grid &
+                              &at the points, also when the solver averages them over corners.')
+  end subroutine add_notes
+
+  !> Read the walls.
+  subroutine custom_init(self, grid, points, properties, error)
+    !> The boundary.
+    class(cartesian_box_custom_t), intent(inout) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Points of the body; left as they are.
+    class(points_t), intent(inout) :: points
+    !> Checked properties.
+    type(properties_t), intent(in) :: properties
+    !> The grid, the codes and the values do not fit together.
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (unused => points)
+    end associate
+    call self%faces%init(grid, 'CartesianBoxCustom', error)
+    if (allocated(error)) return
+    call read_walls(self%faces, properties, self%walls, error)
+    if (allocated(error)) return
+    call grid%make_stencil(.false., 0.0_wp, self%stencil, error)
+  end subroutine custom_init
+
+  !> Keep the body's own normal forces at walls with friction, find the filled area of loaded ones.
+  subroutine custom_generate(self, grid, points, nodes)
+    !> The boundary.
+    class(cartesian_box_custom_t), intent(inout) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Points of the body.
+    class(points_t), intent(in) :: points
+    !> Nodes of the body: mass, momentum, internal and body forces.
+    class(nodes_t), intent(in) :: nodes
+    integer :: face
+
+    do face = 1, self%faces%n
+      self%walls(face)%part = self%faces%part(face, nodes%window)
+      select case (self%walls(face)%code)
+      case (wall_friction)
+        call keep_own_force(axis_of(face), nodes, self%walls(face))
+      case (wall_traction, wall_bounded)
+        call fill_area(self, face, grid, points, self%walls(face))
+      end select
+    end do
+  end subroutine custom_generate
+
+  !> Keep the normal component of the forces at a wall.
+  subroutine keep_own_force(axis, nodes, wall)
+    !> Direction normal to the wall.
+    integer, intent(in) :: axis
+    !> Nodes of the body.
+    class(nodes_t), intent(in) :: nodes
+    !> The wall.
+    type(box_wall_t), intent(inout) :: wall
+    integer :: hi(3), i, j, k
+
+    call resize(wall%own_force, wall%part%size())
+    hi = wall%part%hi()
+    do k = wall%part%lo(3), hi(3)
+      do j = wall%part%lo(2), hi(2)
+        do i = wall%part%lo(1), hi(1)
+          wall%own_force(wall%part%index([i, j, k])) = &
+            nodes%force(axis, nodes%window%index([i, j, k]))
+        end do
+      end do
+    end do
+  end subroutine keep_own_force
+
+  !> Area of a wall at its nodes, times the fraction that is filled with points.
+  subroutine fill_area(self, face, grid, points, wall)
+    !> The boundary.
+    class(cartesian_box_custom_t), intent(in) :: self
+    !> Face of the wall.
+    integer, intent(in) :: face
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Points of the body.
+    class(points_t), intent(in) :: points
+    !> The wall.
+    type(box_wall_t), intent(inout) :: wall
+    integer :: hi(3), node(3), i, j, k, n
+
+    call resize(wall%filled_area, wall%part%size())
+    if (size(wall%filled_area) == 0) return
+    call nodal_volume(points%kin, self%stencil, wall%part, points%n_inside, &
+                      points%order(:points%n_inside), points%x, points%extent, points%volume, &
+                      wall%filled_area)
+    hi = wall%part%hi()
+    do k = wall%part%lo(3), hi(3)
+      do j = wall%part%lo(2), hi(2)
+        do i = wall%part%lo(1), hi(1)
+          node = [i, j, k]
+          n = wall%part%index(node)
+          wall%filled_area(n) = self%faces%area(face, node)*wall%filled_area(n) &
+                                /grid%node_volume(node)
+        end do
+      end do
+    end do
+  end subroutine fill_area
+
+  !> Give an array a length, unless it has it.
+  subroutine resize(values, n)
+    !> The array.
+    real(wp), allocatable, intent(inout) :: values(:)
+    !> Its length.
+    integer, intent(in) :: n
+
+    if (allocated(values)) then
+      if (size(values) == n) return
+      deallocate (values)
+    end if
+    allocate (values(n))
+  end subroutine resize
+
+  !> Apply the walls to the nodes of all faces.
+  subroutine custom_apply(self, grid, points, nodes, dt)
+    !> The boundary.
+    class(cartesian_box_custom_t), intent(inout) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Points of the body.
+    class(points_t), intent(in) :: points
+    !> Nodes of the body: momentum at the start of the step, all forces.
+    class(nodes_t), intent(inout) :: nodes
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    integer :: face, hi(3), node(3), i, j, k, n
+
+    associate (unused => grid, unused_points => points)
+    end associate
+    do face = 1, self%faces%n
+      associate (part => self%walls(face)%part)
+        hi = part%hi()
+        do k = part%lo(3), hi(3)
+          do j = part%lo(2), hi(2)
+            do i = part%lo(1), hi(1)
+              node = [i, j, k]
+              if (self%faces%first(node) /= face) cycle
+              n = nodes%window%index(node)
+              call apply_rules(self%faces, self%walls, node, dt, nodes%mass(n), &
+                               nodes%velocity(:, n), nodes%momentum(:, n), nodes%force(:, n))
+            end do
+          end do
+        end do
+      end associate
+    end do
+  end subroutine custom_apply
+
+  !> Send the rule of each component.
+  subroutine custom_write_fields(self, grid, nodes, writer)
+    !> The boundary.
+    class(cartesian_box_custom_t), intent(in) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Nodes of the body.
+    class(nodes_t), intent(in) :: nodes
+    !> Receiver of nodal fields.
+    class(field_writer_t), intent(inout) :: writer
+    real(wp), allocatable :: mask(:, :)
+    type(window_t) :: part
+    integer :: face, hi(3), rules(3), nvel, i, j, k
+
+    associate (unused => grid)
+    end associate
+    nvel = self%faces%kin%nvel
+    allocate (mask(nvel, nodes%window%size()), source=0.0_wp)
+    do face = 1, self%faces%n
+      part = self%faces%part(face, nodes%window)
+      hi = part%hi()
+      do k = part%lo(3), hi(3)
+        do j = part%lo(2), hi(2)
+          do i = part%lo(1), hi(1)
+            rules = node_rules(self%faces, self%walls, [i, j, k])
+            mask(:, nodes%window%index([i, j, k])) = real(rules(:nvel), wp)
+          end do
+        end do
+      end do
+    end do
+    call writer%vector('bc_nodal_mask', mask, nodes%window)
+  end subroutine custom_write_fields
+
+end module mpm_cartesian_box_custom

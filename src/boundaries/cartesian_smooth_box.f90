@@ -1,0 +1,112 @@
+!> Smooth walls on all faces of the grid.
+module mpm_cartesian_smooth_box
+  use mpm_boundary, only: boundary_t
+  use mpm_box_faces, only: axis_of, box_faces_t
+  use mpm_description, only: description_t
+  use mpm_errors, only: error_t
+  use mpm_field_writer, only: field_writer_t
+  use mpm_grid, only: grid_t
+  use mpm_kinds, only: wp
+  use mpm_nodes, only: nodes_t
+  use mpm_points, only: points_t
+  use mpm_properties, only: properties_t
+  implicit none
+  private
+  public :: cartesian_smooth_box_t
+
+  !> Free slip: the velocity normal to a face is 0 on it.
+  type, extends(boundary_t) :: cartesian_smooth_box_t
+    private
+    !> The walls.
+    type(box_faces_t) :: faces
+  contains
+    procedure, nopass :: describe => cartesian_smooth_box_describe
+    procedure :: init => cartesian_smooth_box_init
+    procedure :: apply => cartesian_smooth_box_apply
+    procedure :: write_fields => cartesian_smooth_box_write_fields
+  end type cartesian_smooth_box_t
+
+contains
+
+  !> Purpose and properties of the class.
+  subroutine cartesian_smooth_box_describe(description)
+    !> The description.
+    type(description_t), intent(out) :: description
+
+    call description%init('boundary', 'CartesianSmoothBox', &
+                          'Free slip on every face of the grid: the components of velocity, &
+                          &momentum and force normal to a face are 0 on its nodes.', &
+                          'Sulsky, Chen and Schreyer, CMAME 118 (1994) 179-196', &
+                          '    boundary-class = "CartesianSmoothBox"')
+    call description%add_note('The faces are those of the grid, wherever its lower corner is; &
+                              &mpm_3d takes coordinate 0 as the lower face.')
+    call description%add_note('The third component of TYPE 4 and 5 is never held. TYPE 4: on the &
+                              &axis r = 0 only the radial velocity is 0, as it must be there.')
+    call description%add_note('The field bc_nodal_mask is 1 for a component that is held; nodes &
+                              &without memory show 0.')
+  end subroutine cartesian_smooth_box_describe
+
+  !> Take the faces from the grid.
+  subroutine cartesian_smooth_box_init(self, grid, points, properties, error)
+    !> The boundary.
+    class(cartesian_smooth_box_t), intent(inout) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Points of the body; left as they are.
+    class(points_t), intent(inout) :: points
+    !> Checked properties: the class has none.
+    type(properties_t), intent(in) :: properties
+    !> The grid is not Cartesian.
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (unused => points, unused_properties => properties)
+    end associate
+    call self%faces%init(grid, 'CartesianSmoothBox', error)
+  end subroutine cartesian_smooth_box_init
+
+  !> Hold the nodes of all faces.
+  subroutine cartesian_smooth_box_apply(self, grid, points, nodes, dt)
+    !> The boundary.
+    class(cartesian_smooth_box_t), intent(inout) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Points of the body.
+    class(points_t), intent(in) :: points
+    !> Nodes of the body: momentum at the start of the step, all forces.
+    class(nodes_t), intent(inout) :: nodes
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    integer :: face, axis
+
+    associate (unused => grid, unused_points => points, unused_dt => dt)
+    end associate
+    do face = 1, self%faces%n
+      axis = axis_of(face)
+      call self%faces%fix(face, axis, axis, nodes)
+    end do
+  end subroutine cartesian_smooth_box_apply
+
+  !> Send the components that are held.
+  subroutine cartesian_smooth_box_write_fields(self, grid, nodes, writer)
+    !> The boundary.
+    class(cartesian_smooth_box_t), intent(in) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Nodes of the body.
+    class(nodes_t), intent(in) :: nodes
+    !> Receiver of nodal fields.
+    class(field_writer_t), intent(inout) :: writer
+    real(wp), allocatable :: mask(:, :)
+    integer :: face, axis
+
+    associate (unused => grid)
+    end associate
+    allocate (mask(self%faces%kin%nvel, nodes%window%size()), source=0.0_wp)
+    do face = 1, self%faces%n
+      axis = axis_of(face)
+      call self%faces%mark(face, axis, axis, nodes%window, mask)
+    end do
+    call writer%vector('bc_nodal_mask', mask, nodes%window)
+  end subroutine cartesian_smooth_box_write_fields
+
+end module mpm_cartesian_smooth_box

@@ -1,0 +1,404 @@
+!> From a config to a job: sections to objects, whatever their order in the file.
+module mpm_configurator
+  use mpm_bodies_reader, only: read_body
+  use mpm_configurable, only: configurable_t
+  use mpm_contact_registry, only: create_contact
+  use mpm_description, only: description_t
+  use mpm_document, only: document_t, entry_t, section_t, value_t, value_to_integer, value_to_real
+  use mpm_driver_registry, only: create_driver
+  use mpm_errors, only: err_input, err_usage, error_t, raise
+  use mpm_grid_registry, only: create_grid
+  use mpm_job, only: job_t
+  use mpm_kinds, only: wp
+  use mpm_kinematics, only: make_kinematics
+  use mpm_object_reader, only: class_of, lacks, properties_of
+  use mpm_override, only: parse_override
+  use mpm_parser, only: parse_file
+  use mpm_properties, only: properties_t
+  use mpm_section_reader, only: check_keys, single_value
+  use mpm_serializer_registry, only: create_serializer
+  use mpm_solver_registry, only: create_solver
+  use mpm_strings, only: nearest_name, string_t, to_text
+  implicit none
+  private
+  public :: configure
+
+  !> Sections that a config has, in the order of the manual.
+  character(10), parameter :: section_names(7) = &
+    [character(10) :: 'job', 'serializer', 'driver', 'solver', 'grid', 'body', 'contact']
+  !> Keys of the sections of single objects.
+  character(14), parameter :: object_keys(5) = &
+    [character(14) :: 'class', 'name', 'properties', 'int-properties', 'str-properties']
+
+contains
+
+  !> Build a job from a config.
+  subroutine configure(path, overrides, job, error)
+    !> The config.
+    character(*), intent(in) :: path
+    !> Texts `section.key=value` that take the place of what the config says.
+    type(string_t), intent(in) :: overrides(:)
+    !> The job; its model is not started.
+    type(job_t), intent(out) :: job
+    !> The first thing wrong with the config or the files that it names.
+    type(error_t), allocatable, intent(out) :: error
+    type(document_t) :: document
+    integer :: i
+
+    job%config = path
+    call parse_file(path, document, error)
+    if (allocated(error)) return
+    if (document%is_empty()) then
+      call raise(error, err_input, 'the config is empty', path, &
+                 hint='it needs the sections job, serializer, driver, solver, grid and body')
+      return
+    end if
+    do i = 1, size(overrides)
+      call apply_override(overrides(i)%text, document, error)
+      if (allocated(error)) return
+    end do
+    call check_sections(document, error)
+    if (allocated(error)) return
+    call read_job(document, job, error)
+    if (allocated(error)) return
+    call read_objects(document, job, error)
+    if (allocated(error)) return
+    call read_all_bodies(document, job, error)
+    if (allocated(error)) return
+    call read_contacts(document, job, error)
+  end subroutine configure
+
+  !> Known sections, each as often as it may occur.
+  subroutine check_sections(document, error)
+    !> The config.
+    type(document_t), intent(in) :: document
+    !> The first thing wrong.
+    type(error_t), allocatable, intent(out) :: error
+    type(string_t) :: known(size(section_names))
+    character(:), allocatable :: near
+    integer :: i, first
+
+    if (size(document%entries) > 0) then
+      call raise(error, err_input, 'key "'//document%entries(1)%key//'" outside of a section', &
+                 document%path, document%entries(1)%line, 'keys belong between the braces of a &
+                 &section such as job { }')
+      return
+    end if
+    do i = 1, size(section_names)
+      known(i)%text = trim(section_names(i))
+    end do
+    do i = 1, size(document%sections)
+      associate (section => document%sections(i))
+        if (.not. any(section_names == section%name)) then
+          near = nearest_name(section%name, known)
+          if (len(near) > 0) then
+            near = 'did you mean "'//near//'"?'
+          else
+            near = 'sections: job, serializer, driver, solver, grid, body, contact'
+          end if
+          call raise(error, err_input, 'unknown section "'//section%name//'"', document%path, &
+                     section%line, near)
+          return
+        end if
+        first = document%find_section(section%name)
+        if (first < i .and. section%name /= 'body' .and. section%name /= 'contact') then
+          call raise(error, err_input, 'a second section "'//section%name//'"', document%path, &
+                     section%line, 'the first stands in line '// &
+                     to_text(document%sections(first)%line)//'; keep one')
+          return
+        end if
+      end associate
+    end do
+    do i = 1, size(section_names) - 1
+      if (document%find_section(trim(section_names(i))) > 0) cycle
+      call raise(error, err_input, 'section "'//trim(section_names(i))//'" is missing', &
+                 document%path, hint='add '//trim(section_names(i))//' { ... }')
+      return
+    end do
+  end subroutine check_sections
+
+  !> Section `job`.
+  subroutine read_job(document, job, error)
+    !> The config.
+    type(document_t), intent(in) :: document
+    !> The job: TYPE, times and threads are set.
+    type(job_t), intent(inout) :: job
+    !> The first thing wrong.
+    type(error_t), allocatable, intent(out) :: error
+    type(value_t) :: value
+    integer :: sim_type
+    logical :: found
+
+    associate (section => document%sections(document%find_section('job')), model => job%model)
+      call check_keys(section, document%path, &
+                      [character(7) :: 't', 'dt', 'TYPE', 'threads'], error)
+      if (allocated(error)) return
+      call single_value(section, document%path, 'dt', value, found, error)
+      if (allocated(error)) return
+      if (.not. found) then
+        call raise(error, err_input, 'job needs "dt"', document%path, section%line, &
+                   'dt is the time step in seconds, for example: dt = 1e-3')
+        return
+      end if
+      call value_to_real(value, model%dt, error)
+      if (allocated(error)) return
+      if (.not. (model%dt > 0.0_wp .and. model%dt <= huge(1.0_wp))) then
+        call raise(error, err_input, 'dt = '//value%text//' is not a time step', value%file, &
+                   value%line, 'dt must be a finite number above 0')
+        return
+      end if
+      call single_value(section, document%path, 't', value, found, error)
+      if (allocated(error)) return
+      if (found) then
+        call value_to_real(value, model%t_start, error)
+        if (allocated(error)) return
+        if (.not. abs(model%t_start) <= huge(1.0_wp)) then
+          call raise(error, err_input, 't = '//value%text//' is not a time', value%file, &
+                     value%line, 't is the start time and must be a finite number')
+          return
+        end if
+      end if
+      call single_value(section, document%path, 'TYPE', value, found, error)
+      if (allocated(error)) return
+      sim_type = 3
+      if (found) then
+        call value_to_integer(value, sim_type, error)
+        if (allocated(error)) return
+        if (sim_type < 1 .or. sim_type > 5) then
+          call raise(error, err_input, 'TYPE = '//value%text//' does not exist', value%file, &
+                     value%line, '1: uniaxial strain, 2: plane strain, 3: 3D, 4: axisymmetric, &
+                     &5: 2D with out-of-plane motion')
+          return
+        end if
+      end if
+      model%kin = make_kinematics(sim_type)
+      call single_value(section, document%path, 'threads', value, found, error)
+      if (allocated(error)) return
+      model%threads = 0
+      if (.not. found) return
+      call value_to_integer(value, model%threads, error)
+      if (allocated(error)) return
+      if (model%threads < 0 .or. model%threads > 4096) then
+        call raise(error, err_input, 'threads = '//value%text//' is out of bounds', value%file, &
+                   value%line, 'threads is 1 to 4096, or 0 for what OMP_NUM_THREADS says')
+      end if
+    end associate
+  end subroutine read_job
+
+  !> Serializer, driver, solver and grid.
+  subroutine read_objects(document, job, error)
+    !> The config.
+    type(document_t), intent(in) :: document
+    !> The job: the four objects are set up.
+    type(job_t), intent(inout) :: job
+    !> The first thing wrong.
+    type(error_t), allocatable, intent(out) :: error
+    type(description_t) :: description
+    type(properties_t) :: properties
+    type(value_t) :: class
+
+    associate (path => document%path, kin => job%model%kin)
+      associate (section => document%sections(document%find_section('serializer')))
+        call class_of(section, path, 'class', object_keys, class, error)
+        if (allocated(error)) return
+        call create_serializer(class%text, job%serializer, error)
+        if (lacks(error, class)) return
+        call job%serializer%describe(description)
+        call properties_of(section, '', 'properties', description, kin%sim_type, class, &
+                           properties, error)
+        if (allocated(error)) return
+        call job%serializer%init(properties, error)
+        if (lacks(error, class)) return
+      end associate
+      associate (section => document%sections(document%find_section('driver')))
+        call class_of(section, path, 'class', object_keys, class, error)
+        if (allocated(error)) return
+        call create_driver(class%text, job%driver, error)
+        if (lacks(error, class)) return
+        call job%driver%describe(description)
+        call properties_of(section, '', 'properties', description, kin%sim_type, class, &
+                           properties, error)
+        if (allocated(error)) return
+        call job%driver%init(properties, error)
+        if (lacks(error, class)) return
+        if (.not. job%driver%t_stop > job%model%t_start) then
+          call properties%reject('t_stop', 'the stop time '//to_text(job%driver%t_stop)// &
+                                 ' s is not after the start time '// &
+                                 to_text(job%model%t_start)//' s', error, &
+                                 'the first property of the driver is the stop time')
+          return
+        end if
+      end associate
+      associate (section => document%sections(document%find_section('solver')))
+        call class_of(section, path, 'class', object_keys, class, error)
+        if (allocated(error)) return
+        call create_solver(class%text, job%solver, error)
+        if (lacks(error, class)) return
+        call job%solver%describe(description)
+        call properties_of(section, '', 'properties', description, kin%sim_type, class, &
+                           properties, error)
+        if (allocated(error)) return
+        call job%solver%init(properties, error)
+        if (lacks(error, class)) return
+      end associate
+      associate (section => document%sections(document%find_section('grid')))
+        call class_of(section, path, 'class', object_keys, class, error)
+        if (allocated(error)) return
+        call create_grid(class%text, job%model%grid, error)
+        if (lacks(error, class)) return
+        call job%model%grid%describe(description)
+        call properties_of(section, '', 'properties', description, kin%sim_type, class, &
+                           properties, error)
+        if (allocated(error)) return
+        call job%model%grid%init(kin, properties, error)
+        if (lacks(error, class)) return
+      end associate
+    end associate
+  end subroutine read_objects
+
+  !> The bodies in the order of the config.
+  subroutine read_all_bodies(document, job, error)
+    !> The config.
+    type(document_t), intent(in) :: document
+    !> The job: the bodies are set up.
+    type(job_t), intent(inout) :: job
+    !> The first thing wrong.
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i, j, s
+
+    allocate (job%model%bodies(document%count_sections('body')))
+    s = 0
+    do i = 1, size(job%model%bodies)
+      s = document%find_section('body', s)
+      call read_body(document%sections(s), document%path, i - 1, job%model%grid, &
+                     job%model%bodies(i)%body, error)
+      if (allocated(error)) return
+      do j = 1, i - 1
+        if (job%model%bodies(j)%body%name == job%model%bodies(i)%body%name) then
+          call raise(error, err_input, 'a second body named "'// &
+                     job%model%bodies(i)%body%name//'"', document%path, &
+                     document%sections(s)%line, 'names of bodies are unique: choose another')
+          return
+        end if
+      end do
+    end do
+  end subroutine read_all_bodies
+
+  !> The contacts in the order of the config.
+  subroutine read_contacts(document, job, error)
+    !> The config.
+    type(document_t), intent(in) :: document
+    !> The job: the contacts are set up.
+    type(job_t), intent(inout) :: job
+    !> The first thing wrong.
+    type(error_t), allocatable, intent(out) :: error
+    type(description_t) :: description
+    type(properties_t) :: properties
+    type(value_t) :: class, name
+    integer :: i, s
+    logical :: found
+
+    allocate (job%model%contacts(document%count_sections('contact')))
+    s = 0
+    do i = 1, size(job%model%contacts)
+      s = document%find_section('contact', s)
+      associate (section => document%sections(s), slot => job%model%contacts(i))
+        call class_of(section, document%path, 'class', object_keys, class, error)
+        if (allocated(error)) return
+        call single_value(section, document%path, 'name', name, found, error)
+        if (allocated(error)) return
+        call create_contact(class%text, slot%contact, error)
+        if (lacks(error, class)) return
+        slot%contact%name = name%text
+        call slot%contact%describe(description)
+        call properties_of(section, '', 'properties', description, job%model%kin%sim_type, class, &
+                           properties, error)
+        if (allocated(error)) return
+        call slot%contact%init(job%model%grid, job%model%bodies, properties, error)
+        if (lacks(error, class)) return
+      end associate
+    end do
+  end subroutine read_contacts
+
+  !> Put the values of an override in place of those of the config.
+  subroutine apply_override(text, document, error)
+    !> `section.key=value`.
+    character(*), intent(in) :: text
+    !> The config.
+    type(document_t), intent(inout) :: document
+    !> No such section, or bad syntax.
+    type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: selector, key
+    type(value_t), allocatable :: values(:)
+    integer :: s, e
+
+    call parse_override(text, selector, key, values, error)
+    if (allocated(error)) return
+    call select_section(document, selector, s)
+    if (s == 0) then
+      call raise(error, err_usage, '--set '//text//': the config has no section "'//selector//'"', &
+                 hint='write section.key=value; a body or contact is body.NAME or body.NUMBER')
+      return
+    end if
+    associate (section => document%sections(s))
+      e = section%find(key)
+      if (e == 0) then
+        call append_entry(section%entries, key, section%line)
+        e = size(section%entries)
+      end if
+      call move_alloc(values, section%entries(e)%values)
+    end associate
+  end subroutine apply_override
+
+  !> The section that a selector means: `grid`, `body.block_0` or `body.0`.
+  subroutine select_section(document, selector, s)
+    !> The config.
+    type(document_t), intent(in) :: document
+    !> Section, perhaps with a point and a name or number from 0.
+    character(*), intent(in) :: selector
+    !> Its position, or 0.
+    integer, intent(out) :: s
+    character(:), allocatable :: name, which
+    type(value_t) :: value
+    type(error_t), allocatable :: error
+    integer :: dot, number
+    logical :: found
+
+    dot = index(selector, '.')
+    if (dot == 0) then
+      s = document%find_section(selector)
+      if (document%count_sections(selector) > 1) s = 0
+      return
+    end if
+    name = selector(:dot - 1)
+    which = selector(dot + 1:)
+    number = 0
+    s = document%find_section(name)
+    do while (s > 0)
+      call single_value(document%sections(s), document%path, 'name', value, found, error)
+      if (found .and. value%text == which) return
+      if (to_text(number) == which) return
+      number = number + 1
+      s = document%find_section(name, s)
+    end do
+  end subroutine select_section
+
+  !> Append an entry without values.
+  subroutine append_entry(entries, key, line)
+    !> The entries.
+    type(entry_t), allocatable, intent(inout) :: entries(:)
+    !> Key of the new one.
+    character(*), intent(in) :: key
+    !> Its line.
+    integer, intent(in) :: line
+    type(entry_t), allocatable :: longer(:)
+
+    allocate (longer(size(entries) + 1))
+    longer(:size(entries)) = entries
+    longer(size(longer))%key = key
+    longer(size(longer))%line = line
+    allocate (longer(size(longer))%values(0))
+    call move_alloc(longer, entries)
+  end subroutine append_entry
+
+end module mpm_configurator

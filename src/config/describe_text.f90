@@ -1,0 +1,138 @@
+!> Descriptions of classes as text for a terminal.
+module mpm_describe_text
+  use mpm_description, only: description_t, kind_integer, kind_real, kind_string, property_t
+  use mpm_strings, only: to_text
+  implicit none
+  private
+  public :: describe_text, list_line
+
+  !> Columns of the text.
+  integer, parameter :: width = 92
+
+contains
+
+  !> One line of a list of classes.
+  pure function list_line(description) result(text)
+    !> The class.
+    type(description_t), intent(in) :: description
+    !> Its name and the first sentence of its purpose.
+    character(:), allocatable :: text
+    integer :: last
+
+    last = index(description%purpose, '. ')
+    if (last == 0) last = len(description%purpose)
+    text = '  '//description%name//repeat(' ', max(1, 28 - len(description%name)))// &
+           description%purpose(:last)
+  end function list_line
+
+  !> Purpose, properties, remarks, source and an example of a class.
+  pure function describe_text(description) result(text)
+    !> The class.
+    type(description_t), intent(in) :: description
+    !> Several lines.
+    character(:), allocatable :: text
+    character(*), parameter :: nl = new_line('a')
+    integer :: i
+
+    text = description%name//' ('//description%role//')'//nl//wrap(description%purpose, 2)
+    text = text//kind_text(description, kind_real, 'reals (properties)')
+    text = text//kind_text(description, kind_integer, 'integers (int-properties)')
+    text = text//kind_text(description, kind_string, 'strings (str-properties)')
+    do i = 1, size(description%notes)
+      if (i == 1) text = text//nl//nl//'remarks'
+      text = text//nl//wrap(description%notes(i)%text, 2)
+    end do
+    text = text//nl//nl//'source'//nl//wrap(description%source, 2)
+    text = text//nl//nl//'example'//nl//description%example
+  end function describe_text
+
+  !> The properties of one list.
+  pure function kind_text(description, kind, title) result(text)
+    !> The class.
+    type(description_t), intent(in) :: description
+    !> The list.
+    integer, intent(in) :: kind
+    !> Its title.
+    character(*), intent(in) :: title
+    !> Several lines; empty when the class has none.
+    character(:), allocatable :: text
+    character(*), parameter :: nl = new_line('a')
+    integer :: i
+
+    text = ''
+    do i = 1, size(description%properties)
+      if (description%properties(i)%kind /= kind) cycle
+      if (len(text) == 0) text = nl//nl//title
+      text = text//nl//'  '//property_line(description%properties(i))// &
+             nl//wrap(description%properties(i)%meaning, 6)
+    end do
+  end function kind_text
+
+  !> Name, unit, default, bounds and TYPEs of a property.
+  pure function property_line(property) result(text)
+    !> The property.
+    type(property_t), intent(in) :: property
+    !> One line.
+    character(:), allocatable :: text
+    character(:), allocatable :: types
+    integer :: t
+
+    text = property%name
+    if (property%unit /= '-') text = text//' ['//property%unit//']'
+    if (property%is_list) then
+      text = text//', any number'
+    else if (property%required) then
+      text = text//', required'
+    else
+      select case (property%kind)
+      case (kind_real)
+        text = text//', default '//to_text(property%default_real)
+      case (kind_integer)
+        text = text//', default '//to_text(property%default_integer)
+      case default
+        text = text//', default "'//property%default_string//'"'
+      end select
+    end if
+    if (property%kind /= kind_string) then
+      if (property%lower > -real(huge(1))) then
+        text = text//trim(merge(', above   ', ', at least', property%above))//' '// &
+               to_text(property%lower)
+      end if
+      if (property%upper < real(huge(1))) then
+        text = text//trim(merge(', below  ', ', at most', property%below))//' '// &
+               to_text(property%upper)
+      end if
+    end if
+    if (all(property%types)) return
+    types = ''
+    do t = 1, 5
+      if (property%types(t)) types = types//' '//to_text(t)
+    end do
+    text = text//' (TYPE'//types//')'
+  end function property_line
+
+  !> Break a text into lines of limited width.
+  pure function wrap(text, indent) result(lines)
+    !> One paragraph.
+    character(*), intent(in) :: text
+    !> Blanks in front of each line.
+    integer, intent(in) :: indent
+    !> Lines parted by newlines.
+    character(:), allocatable :: lines
+    integer :: start, last
+
+    lines = ''
+    start = 1
+    do while (start <= len(text))
+      last = min(len(text), start + width - indent - 1)
+      if (last < len(text)) then
+        last = start - 1 + scan(text(start:last), ' ', back=.true.)
+        if (last < start) last = min(len(text), start + width - indent - 1)
+      end if
+      if (len(lines) > 0) lines = lines//new_line('a')
+      lines = lines//repeat(' ', indent)//trim(text(start:last))
+      start = last + 1
+    end do
+  end function wrap
+
+end module mpm_describe_text

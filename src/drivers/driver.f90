@@ -1,0 +1,166 @@
+!> The role `driver`: the loop over time.
+module mpm_driver
+  use mpm_configurable, only: configurable_t
+  use mpm_errors, only: error_t
+  use mpm_kinds, only: lp, wp
+  use mpm_kinematics, only: kinematics_t, type_1d, type_3d
+  use mpm_model, only: model_t
+  use mpm_monitor, only: monitor_t
+  use mpm_properties, only: properties_t
+  use mpm_serializer, only: serializer_t
+  use mpm_solver, only: solver_t
+  implicit none
+  private
+  public :: driver_t, standard_gravity
+
+  !> A loop over time with a body force.
+  type, abstract, extends(configurable_t) :: driver_t
+    !> Stop time. [s]
+    real(wp) :: t_stop = 0.0_wp
+  contains
+    !> Set up from the properties.
+    procedure(init_i), deferred :: init
+    !> Acceleration by the body force.
+    procedure(body_force_i), deferred :: body_force
+    !> Prepare the model when everything is set up.
+    procedure :: prepare => driver_prepare
+    !> Act on the model before a step.
+    procedure :: before_step => driver_before_step
+    !> Run from the start time to the stop time.
+    procedure, non_overridable :: run => driver_run
+    !> Number of steps of the whole run.
+    procedure, non_overridable :: step_count => driver_step_count
+  end type driver_t
+
+  abstract interface
+    !> Set up from the properties.
+    subroutine init_i(self, properties, error)
+      import :: driver_t, error_t, properties_t
+      implicit none
+      !> The driver.
+      class(driver_t), intent(inout) :: self
+      !> Checked properties.
+      type(properties_t), intent(in) :: properties
+      !> Values that do not fit together.
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine init_i
+
+    !> Acceleration by the body force.
+    pure function body_force_i(self, kin) result(b)
+      import :: driver_t, kinematics_t, wp
+      implicit none
+      !> The driver.
+      class(driver_t), intent(in) :: self
+      !> Component counts.
+      type(kinematics_t), intent(in) :: kin
+      !> Acceleration, components beyond nvel 0. [m/s2]
+      real(wp) :: b(3)
+    end function body_force_i
+  end interface
+
+contains
+
+  !> 9.81 m/s2 downwards: along -x in TYPE 1, -z in TYPE 3, -y (TYPE 4: the height) otherwise.
+  pure function standard_gravity(kin) result(b)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Acceleration. [m/s2]
+    real(wp) :: b(3)
+
+    b = 0.0_wp
+    select case (kin%sim_type)
+    case (type_1d)
+      b(1) = -9.81_wp
+    case (type_3d)
+      b(3) = -9.81_wp
+    case default
+      b(2) = -9.81_wp
+    end select
+  end function standard_gravity
+
+  !> Most drivers have nothing to prepare.
+  subroutine driver_prepare(self, model, error)
+    !> The driver.
+    class(driver_t), intent(inout) :: self
+    !> The model, set up and not yet mapped.
+    type(model_t), intent(inout) :: model
+    !> The model does not have what the driver needs.
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (unused => self, unused_model => model)
+    end associate
+  end subroutine driver_prepare
+
+  !> Most drivers do nothing before a step.
+  subroutine driver_before_step(self, model)
+    !> The driver.
+    class(driver_t), intent(inout) :: self
+    !> The model at the start of the step.
+    type(model_t), intent(inout) :: model
+
+    associate (unused => self, unused_model => model)
+    end associate
+  end subroutine driver_before_step
+
+  !> Number of steps from the start to the stop time; the last one may be shorter.
+  pure function driver_step_count(self, model) result(steps)
+    !> The driver.
+    class(driver_t), intent(in) :: self
+    !> The model, for its start time and time step.
+    type(model_t), intent(in) :: model
+    !> Number of steps, at least 0.
+    integer(lp) :: steps
+    real(wp) :: exact
+
+    exact = (self%t_stop - model%t_start)/model%dt
+    ! A span that is a multiple of dt up to rounding needs no sliver of a step at its end.
+    steps = max(0_lp, ceiling(exact - 1.0e-6_wp, lp))
+  end function driver_step_count
+
+  !> Run from the start time to the stop time.
+  subroutine driver_run(self, model, solver, serializer, monitor, error)
+    !> The driver.
+    class(driver_t), intent(inout) :: self
+    !> The model, prepared.
+    type(model_t), intent(inout) :: model
+    !> The solver, started.
+    class(solver_t), intent(inout) :: solver
+    !> The serializer, opened.
+    class(serializer_t), intent(inout) :: serializer
+    !> What is told of the run.
+    class(monitor_t), intent(inout) :: monitor
+    !> The simulation went bad, or a frame can't be written.
+    type(error_t), allocatable, intent(out) :: error
+    integer(lp) :: steps
+    real(wp) :: dt, t_next
+    logical :: frame
+
+    steps = self%step_count(model)
+    call monitor%begin(model, solver, steps)
+    call serializer%write_frame(model, error)
+    if (allocated(error)) return
+    do while (model%step < steps)
+      call self%before_step(model)
+      t_next = model%t_start + real(model%step + 1, wp)*model%dt
+      dt = model%dt
+      if (model%step + 1 == steps) then
+        t_next = self%t_stop
+        dt = t_next - model%time
+      end if
+      frame = serializer%due(model, t_next)
+      call solver%step(model, dt, frame, error)
+      if (allocated(error)) return
+      model%step = model%step + 1
+      model%time = t_next
+      model%last_dt = dt
+      if (frame) then
+        call monitor%check(model, solver)
+        call serializer%write_frame(model, error)
+        if (allocated(error)) return
+      end if
+      call monitor%progress(model, steps, serializer%frames)
+    end do
+    call monitor%finish(model, serializer)
+  end subroutine driver_run
+
+end module mpm_driver

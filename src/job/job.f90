@@ -1,0 +1,110 @@
+!> A simulation with all its objects.
+module mpm_job
+  use mpm_driver, only: driver_t
+  use mpm_errors, only: error_t
+  use mpm_kinds, only: lp
+  use mpm_model, only: model_t
+  use mpm_monitor, only: monitor_t
+  use mpm_serializer, only: serializer_t
+  use mpm_solver, only: solver_t
+  implicit none
+  private
+  public :: job_t
+
+  !> Everything that a run needs.
+  type :: job_t
+    !> The config.
+    character(:), allocatable :: config
+    !> Grid, bodies and contacts.
+    type(model_t) :: model
+    !> The loop over time.
+    class(driver_t), allocatable :: driver
+    !> One step.
+    class(solver_t), allocatable :: solver
+    !> Frames.
+    class(serializer_t), allocatable :: serializer
+  contains
+    !> Bring the model to its start: body forces, bases, first mapping.
+    procedure :: start => job_start
+    !> Run to the stop time.
+    procedure :: run => job_run
+    !> Memory of the points and nodes.
+    procedure :: memory => job_memory
+  end type job_t
+
+contains
+
+  !> Bring the model to its start: body forces, bases, first mapping.
+  subroutine job_start(self, error)
+    !> The job, configured.
+    class(job_t), intent(inout) :: self
+    !> Bodies that driver or solver can't take.
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i
+
+    self%model%time = self%model%t_start
+    do i = 1, size(self%model%bodies)
+      self%model%bodies(i)%body%points%body_force = self%driver%body_force(self%model%kin)
+    end do
+    call self%driver%prepare(self%model, error)
+    if (allocated(error)) return
+    call self%solver%start(self%model, error)
+  end subroutine job_start
+
+  !> Run to the stop time.
+  subroutine job_run(self, monitor, error)
+    !> The job, started.
+    class(job_t), intent(inout) :: self
+    !> What is told of the run.
+    class(monitor_t), intent(inout) :: monitor
+    !> The simulation went bad, or output failed.
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%serializer%open(self%model, error)
+    if (allocated(error)) return
+    call self%driver%run(self%model, self%solver, self%serializer, monitor, error)
+  end subroutine job_run
+
+  !> Bytes held by the points and nodes of all bodies.
+  pure function job_memory(self) result(bytes)
+    !> The job, started.
+    class(job_t), intent(in) :: self
+    !> Bytes.
+    integer(lp) :: bytes
+    integer :: i
+
+    bytes = 0
+    do i = 1, size(self%model%bodies)
+      bytes = bytes + body_memory(self%model, i)
+    end do
+  end function job_memory
+
+  !> Bytes held by the points and nodes of one body.
+  pure function body_memory(model, i) result(bytes)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> Position of the body.
+    integer, intent(in) :: i
+    !> Bytes.
+    integer(lp) :: bytes
+    integer(lp) :: bits
+
+    associate (points => model%bodies(i)%body%points, nodes => model%bodies(i)%body%nodes)
+      bits = storage_size(points%mass, lp)* &
+             (size(points%mass, kind=lp) + size(points%volume, kind=lp) &
+              + size(points%extent, kind=lp) + size(points%x, kind=lp) &
+              + size(points%displacement, kind=lp) + size(points%velocity, kind=lp) &
+              + size(points%stress, kind=lp))
+      if (allocated(points%gradient)) then
+        bits = bits + storage_size(points%gradient, lp)*size(points%gradient, kind=lp)
+      end if
+      bits = bits + storage_size(points%id, lp)*3_lp*size(points%id, kind=lp)
+      bits = bits + storage_size(nodes%mass, lp)* &
+             (size(nodes%mass, kind=lp) + size(nodes%momentum, kind=lp) &
+              + size(nodes%force, kind=lp) + size(nodes%velocity, kind=lp) &
+              + size(nodes%increment, kind=lp))
+    end associate
+    bytes = bits/8_lp
+  end function body_memory
+
+end module mpm_job

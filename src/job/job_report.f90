@@ -1,0 +1,118 @@
+!> What a job is about to do, for people.
+module mpm_job_report
+  use, intrinsic :: iso_fortran_env, only: output_unit
+  use mpm_job, only: job_t
+  use mpm_kinds, only: lp, wp
+  use mpm_strings, only: to_text
+  use mpm_window, only: window_t
+  implicit none
+  private
+  public :: report_job
+
+contains
+
+  !> Print sizes, memory, time step and its limits, and what will be written.
+  subroutine report_job(job)
+    !> The job, started.
+    type(job_t), intent(in) :: job
+    character(*), parameter :: kinds(5) = &
+      [character(36) :: 'uniaxial strain', 'plane strain', '3D', 'axisymmetric', &
+       '2D with out-of-plane motion']
+    type(window_t) :: whole
+    real(wp) :: lower(3), upper(3)
+    integer(lp) :: steps, memory
+    integer :: frames, dim
+
+    dim = job%model%kin%dim
+    whole = job%model%grid%whole()
+    call job%model%grid%bounds(lower, upper)
+    steps = job%driver%step_count(job%model)
+    call line('config:  '//job%config//'   TYPE '//to_text(job%model%kin%sim_type)//' ('// &
+              trim(kinds(job%model%kin%sim_type))//')')
+    call line('grid:    '//sizes(whole%n(:dim) - 1)//' cells, '//to_text(whole%size())// &
+              ' nodes, '//box(lower(:dim), upper(:dim)))
+    call report_bodies(job)
+    call line('contacts: '//to_text(size(job%model%contacts)))
+    memory = job%memory()
+    call line('memory:  '//to_text(real(memory, wp)/1.0e6_wp, 3)//' MB for points and nodes')
+    call line('time:    t = '//to_text(job%model%t_start)//' to '//to_text(job%driver%t_stop)// &
+              ' s, dt = '//to_text(job%model%dt)//' s, '//to_text(steps)//' steps')
+    frames = 1
+    if (job%serializer%rate > 0.0_wp) then
+      frames = frames + int(min(real(steps, wp), (job%driver%t_stop - job%model%t_start)* &
+                                job%serializer%rate + 1.0e-6_wp))
+    end if
+    call line('frames:  '//to_text(frames)//' in '//job%serializer%destination()// &
+              ', for the points and the nodes of each body')
+  end subroutine report_job
+
+  !> A line for each body.
+  subroutine report_bodies(job)
+    !> The job, started.
+    type(job_t), intent(in) :: job
+    character(:), allocatable :: text
+    real(wp) :: speed, limit
+    integer :: i
+
+    text = ''
+    do i = 1, size(job%model%bodies)
+      associate (body => job%model%bodies(i)%body)
+        text = 'body:    '//to_text(body%id)//' "'//body%name//'", '//to_text(body%points%n)// &
+               ' points'
+        if (body%points%n_inside < body%points%n) then
+          text = text//' ('//to_text(body%points%n - body%points%n_inside)//' inactive)'
+        end if
+        text = text//', mass '//to_text(sum(body%points%mass))//' kg'
+        call job%solver%stable_step(job%model, i, speed, limit)
+        if (speed > 0.0_wp) then
+          text = text//', wave speed '//to_text(speed)//' m/s, stable step '//to_text(limit)//' s'
+          if (job%model%dt > limit) text = text//' (BELOW dt)'
+        end if
+        if (.not. body%active) text = text//', not yet active'
+        call line(text)
+      end associate
+    end do
+  end subroutine report_bodies
+
+  !> Print a line.
+  subroutine line(text)
+    !> The line.
+    character(*), intent(in) :: text
+
+    write (output_unit, '(a)') text
+  end subroutine line
+
+  !> Counts as `20 x 30`.
+  pure function sizes(counts) result(text)
+    !> The counts.
+    integer, intent(in) :: counts(:)
+    !> The text.
+    character(:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(counts)
+      if (i > 1) text = text//' x '
+      text = text//to_text(counts(i))
+    end do
+  end function sizes
+
+  !> A box as `[0, 1] x [0, 2] m`.
+  pure function box(lower, upper) result(text)
+    !> Lower corner. [m]
+    real(wp), intent(in) :: lower(:)
+    !> Upper corner. [m]
+    real(wp), intent(in) :: upper(:)
+    !> The text.
+    character(:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(lower)
+      if (i > 1) text = text//' x '
+      text = text//'['//to_text(lower(i))//', '//to_text(upper(i))//']'
+    end do
+    text = text//' m'
+  end function box
+
+end module mpm_job_report

@@ -1,0 +1,36 @@
+!> The physical model that a solver advances: grid, bodies and contacts at one time.
+module mpm_model
+  use mpm_body, only: body_slot_t
+  use mpm_contact, only: contact_slot_t
+  use mpm_grid, only: grid_t
+  use mpm_kinds, only: lp, wp
+  use mpm_kinematics, only: kinematics_t
+  implicit none
+  private
+  public :: model_t
+
+  !> Grid, bodies and contacts, and the time to which they belong.
+  type :: model_t
+    !> Component counts of the job's TYPE.
+    type(kinematics_t) :: kin
+    !> Number of threads.
+    integer :: threads = 1
+    !> Start time. [s]
+    real(wp) :: t_start = 0.0_wp
+    !> Time of the state. [s]
+    real(wp) :: time = 0.0_wp
+    !> Time step as configured. [s]
+    real(wp) :: dt = 0.0_wp
+    !> Length of the last step; 0 before the first. [s]
+    real(wp) :: last_dt = 0.0_wp
+    !> Steps made.
+    integer(lp) :: step = 0
+    !> The grid.
+    class(grid_t), allocatable :: grid
+    !> The bodies in the order of the config.
+    type(body_slot_t), allocatable :: bodies(:)
+    !> The contacts in the order of the config.
+    type(contact_slot_t), allocatable :: contacts(:)
+  end type model_t
+
+end module mpm_model

@@ -1,0 +1,268 @@
+!> What the program tells of a run: summaries at its start and end, progress, warnings.
+module mpm_monitor
+  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use mpm_energy, only: energy_t, measure
+  use mpm_files, only: is_terminal
+  use mpm_kinds, only: lp, wp
+  use mpm_model, only: model_t
+  use mpm_serializer, only: serializer_t
+  use mpm_solver, only: solver_t
+  use mpm_strings, only: to_text
+  implicit none
+  private
+  public :: monitor_t
+  public :: quiet, normal, verbose
+
+  !> Errors and warnings only.
+  integer, parameter :: quiet = 0
+  !> Summaries, and progress on a terminal.
+  integer, parameter :: normal = 1
+  !> A line for every frame as well.
+  integer, parameter :: verbose = 2
+  !> File descriptor of the standard output.
+  integer, parameter :: standard_output = 1
+  !> Seconds between two progress lines.
+  real(wp), parameter :: progress_interval = 0.2_wp
+
+  !> Reporter of a run to the standard output; warnings go to the standard error.
+  type :: monitor_t
+    !> How much is told.
+    integer :: verbosity = normal
+    !> Momentum and energy at the start.
+    type(energy_t), private :: at_start
+    !> Clock count at the start of the loop.
+    integer(lp), private :: clock_start = 0
+    !> Clock count of the last progress line.
+    integer(lp), private :: clock_progress = 0
+    !> Whether progress lines are written.
+    logical, private :: shows_progress = .false.
+    !> Whether a body has been warned of.
+    logical, allocatable, private :: warned(:)
+    !> Lost points that have been reported.
+    integer, private :: lost_reported = 0
+    !> Sum over the steps of the points inside the grid.
+    real(wp), private :: point_steps = 0.0_wp
+  contains
+    !> Start of the loop over time.
+    procedure :: begin => monitor_begin
+    !> Compare the stable steps with dt; report points that left the grid.
+    procedure :: check => monitor_check
+    !> End of a step.
+    procedure :: progress => monitor_progress
+    !> End of the run.
+    procedure :: finish => monitor_finish
+    !> Write a line unless quiet.
+    procedure :: say => monitor_say
+    !> Write a warning.
+    procedure :: warn => monitor_warn
+    !> Seconds since the start of the loop.
+    procedure, private :: elapsed => monitor_elapsed
+  end type monitor_t
+
+contains
+
+  !> Start of the loop over time.
+  subroutine monitor_begin(self, model, solver, steps)
+    !> The monitor.
+    class(monitor_t), intent(inout) :: self
+    !> The model at its start.
+    type(model_t), intent(in) :: model
+    !> The solver.
+    class(solver_t), intent(in) :: solver
+    !> Number of steps.
+    integer(lp), intent(in) :: steps
+
+    call measure(model, self%at_start)
+    self%shows_progress = is_terminal(standard_output)
+    if (self%verbosity < normal) self%shows_progress = .false.
+    allocate (self%warned(size(model%bodies)))
+    self%warned = .false.
+    call self%check(model, solver)
+    call self%say('running '//to_text(steps)//' steps on '//to_text(model%threads)// &
+                  trim(merge(' thread ', ' threads', model%threads == 1)))
+    call system_clock(self%clock_start)
+    self%clock_progress = self%clock_start
+  end subroutine monitor_begin
+
+  !> Compare the stable steps with dt; report points that left the grid.
+  subroutine monitor_check(self, model, solver)
+    !> The monitor.
+    class(monitor_t), intent(inout) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The solver.
+    class(solver_t), intent(in) :: solver
+    real(wp) :: speed, limit
+    integer :: i, lost
+
+    lost = 0
+    do i = 1, size(model%bodies)
+      lost = lost + model%bodies(i)%body%points%n_lost
+      if (self%warned(i)) cycle
+      call solver%stable_step(model, i, speed, limit)
+      if (model%dt <= limit) cycle
+      self%warned(i) = .true.
+      call self%warn('dt = '//to_text(model%dt)//' s is above the stable step of body "'// &
+                     model%bodies(i)%body%name//'", '//to_text(limit)//' s (wave speed '// &
+                     to_text(speed)//' m/s): the run may blow up')
+    end do
+    if (lost > self%lost_reported) then
+      self%lost_reported = lost
+      call self%warn(to_text(lost)//trim(merge(' point has  ', ' points have', lost == 1))// &
+                     ' left the grid by t = '//to_text(model%time)//' s and no longer move')
+    end if
+  end subroutine monitor_check
+
+  !> End of a step.
+  subroutine monitor_progress(self, model, steps, frames)
+    !> The monitor.
+    class(monitor_t), intent(inout) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> Steps of the whole run.
+    integer(lp), intent(in) :: steps
+    !> Frames written so far.
+    integer, intent(in) :: frames
+    integer(lp) :: now, rate
+    real(wp) :: seconds, speed
+    integer :: i
+
+    do i = 1, size(model%bodies)
+      if (.not. model%bodies(i)%body%active) cycle
+      self%point_steps = self%point_steps + real(model%bodies(i)%body%points%n_inside, wp)
+    end do
+    if (.not. self%shows_progress) return
+    call system_clock(now, rate)
+    if (real(now - self%clock_progress, wp) < progress_interval*real(rate, wp)) return
+    self%clock_progress = now
+    seconds = self%elapsed()
+    speed = real(model%step, wp)/seconds
+    write (output_unit, '(a)', advance='no') achar(13)//'t = '//to_text(model%time, 4)//' s   '// &
+      to_text(int((100*model%step)/steps))//' %   frames '//to_text(frames)//'   '// &
+      to_text(speed, 3)//' steps/s   left '//duration(real(steps - model%step, wp)/speed)// &
+      '      '
+    flush (output_unit)
+  end subroutine monitor_progress
+
+  !> End of the run: cost, momentum and energy.
+  subroutine monitor_finish(self, model, serializer)
+    !> The monitor.
+    class(monitor_t), intent(inout) :: self
+    !> The model at its end.
+    type(model_t), intent(in) :: model
+    !> The serializer.
+    class(serializer_t), intent(in) :: serializer
+    type(energy_t) :: now
+    real(wp) :: seconds
+    integer :: i, lost
+
+    if (self%shows_progress) write (output_unit, '(a)', advance='no') achar(13)//repeat(' ', 78)// &
+      achar(13)
+    seconds = self%elapsed()
+    call measure(model, now)
+    call self%say('done: '//to_text(model%step)//' steps to t = '//to_text(model%time)//' s in '// &
+                  duration(seconds)//', '// &
+                  to_text(1.0e9_wp*seconds/max(1.0_wp, self%point_steps), 3)// &
+                  ' ns per point and step')
+    call self%say('momentum: '//vector_text(self%at_start%momentum(:model%kin%nvel))//' -> '// &
+                  vector_text(now%momentum(:model%kin%nvel))//' kg m/s, change '// &
+                  to_text(relative(norm2(now%momentum - self%at_start%momentum), &
+                                   max(now%momentum_scale, self%at_start%momentum_scale)), 3)// &
+                  ' of sum m|v|')
+    call self%say('energy: kinetic '//to_text(now%kinetic)//', strain '//to_text(now%strain)// &
+                  ', potential '//to_text(now%potential)//' J, total changed by '// &
+                  to_text(now%total() - self%at_start%total(), 3)//' J from '// &
+                  to_text(self%at_start%total())//' J')
+    lost = 0
+    do i = 1, size(model%bodies)
+      lost = lost + model%bodies(i)%body%points%n_lost
+    end do
+    if (lost > 0) call self%say('points that left the grid: '//to_text(lost))
+    call self%say('frames: '//to_text(serializer%frames)//' in '//serializer%destination()// &
+                  ' ('//to_text(real(serializer%bytes, wp)/1.0e6_wp, 3)//' MB)')
+  end subroutine monitor_finish
+
+  !> Write a line unless quiet.
+  subroutine monitor_say(self, text)
+    !> The monitor.
+    class(monitor_t), intent(in) :: self
+    !> The line.
+    character(*), intent(in) :: text
+
+    if (self%verbosity >= normal) write (output_unit, '(a)') text
+  end subroutine monitor_say
+
+  !> Write a warning.
+  subroutine monitor_warn(self, text)
+    !> The monitor.
+    class(monitor_t), intent(in) :: self
+    !> What to warn of.
+    character(*), intent(in) :: text
+
+    if (self%shows_progress) write (output_unit, '(a)', advance='no') achar(13)
+    flush (output_unit)
+    write (error_unit, '(a)') 'warning: '//text
+  end subroutine monitor_warn
+
+  !> Seconds since the start of the loop.
+  function monitor_elapsed(self) result(seconds)
+    !> The monitor.
+    class(monitor_t), intent(in) :: self
+    !> Wall time. [s]
+    real(wp) :: seconds
+    integer(lp) :: now, rate
+
+    call system_clock(now, rate)
+    seconds = max(real(now - self%clock_start, wp)/real(rate, wp), tiny(1.0_wp))
+  end function monitor_elapsed
+
+  !> a/b, 0 when both are 0.
+  pure function relative(a, b) result(ratio)
+    !> Numerator.
+    real(wp), intent(in) :: a
+    !> Denominator.
+    real(wp), intent(in) :: b
+    !> Their ratio.
+    real(wp) :: ratio
+
+    ratio = 0.0_wp
+    if (b > 0.0_wp) ratio = a/b
+  end function relative
+
+  !> A vector as `(1, 2)`.
+  pure function vector_text(vector) result(text)
+    !> Its components.
+    real(wp), intent(in) :: vector(:)
+    !> The text.
+    character(:), allocatable :: text
+    integer :: i
+
+    text = '('
+    do i = 1, size(vector)
+      if (i > 1) text = text//', '
+      text = text//to_text(vector(i))
+    end do
+    text = text//')'
+  end function vector_text
+
+  !> A time span in words.
+  pure function duration(seconds) result(text)
+    !> The span. [s]
+    real(wp), intent(in) :: seconds
+    !> For example `1 h 2 min` or `3.14 s`.
+    character(:), allocatable :: text
+    integer :: minutes
+
+    if (seconds < 100.0_wp) then
+      text = to_text(seconds, 3)//' s'
+    else
+      minutes = int(min(seconds, 1.0e9_wp)/60.0_wp)
+      if (minutes < 60) then
+        text = to_text(minutes)//' min '//to_text(int(seconds) - 60*minutes)//' s'
+      else
+        text = to_text(minutes/60)//' h '//to_text(mod(minutes, 60))//' min'
+      end if
+    end if
+  end function duration
+
+end module mpm_monitor

@@ -1,0 +1,123 @@
+!> Nodal gradient of a body's mass, which points out of the body at its surface.
+module mpm_mass_gradient
+  use mpm_kinds, only: wp
+  use mpm_kinematics, only: kinematics_t, type_axisymmetric
+  use mpm_stencil, only: axis_fraction, decode_keys, stencil_t, stencil_weights
+  use mpm_window, only: window_t
+  implicit none
+  private
+  public :: mass_gradient
+
+contains
+
+  !> N_i = sum_p m_p grad N_i(x_p) at the nodes of a window; in TYPE 4 with m_p/r_p.
+  !!
+  !! Only points whose stencils reach the window are visited, in the order of their cells.
+  pure subroutine mass_gradient(kin, stencil, window, n, order, row_offset, first_row, key, x, &
+                                extent, mass, gradient)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> The nodes wanted.
+    type(window_t), intent(in) :: window
+    !> Number of points inside the grid.
+    integer, intent(in) :: n
+    !> Slots of the points in the order of their cells. (n)
+    integer, intent(in) :: order(n)
+    !> Points before each row of cells. (0:rows)
+    integer, intent(in) :: row_offset(0:)
+    !> Grid index of the first row.
+    integer, intent(in) :: first_row
+    !> Keys. (n)
+    integer, intent(in) :: key(n)
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(kin%dim, n)
+    !> Half sides of the points' boxes. [m] (n)
+    real(wp), intent(in) :: extent(n)
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Gradients, components beyond dim 0. [kg/m] (nvel, nn)
+    real(wp), intent(out) :: gradient(:, :)
+    real(wp) :: w(stencil%width, kin%dim, 1), dw(stencil%width, kin%dim, 1), m, r_floor
+    integer :: base(3, 1), rows, low, high, k, p
+
+    gradient = 0.0_wp
+    r_floor = axis_fraction*stencil%h(1)
+    rows = ubound(row_offset, 1)
+    associate (d => kin%dim)
+      low = max(0, window%lo(d) - stencil%width + 1 - first_row)
+      high = min(rows - 1, window%lo(d) + window%n(d) - 1 - first_row)
+    end associate
+    if (high < low) return
+    do k = row_offset(low) + 1, row_offset(high + 1)
+      p = order(k)
+      call decode_keys(stencil, 1, key(p:p), base)
+      if (.not. reaches(stencil, kin%dim, base(:, 1), window)) cycle
+      call stencil_weights(stencil, 1, x(:, p), extent(p:p), base, w, dw)
+      m = mass(p)
+      if (kin%sim_type == type_axisymmetric) m = m/max(x(1, p), r_floor)
+      call add_point(stencil%width, kin%dim, base(:, 1), w(:, :, 1), dw(:, :, 1), m, window, &
+                     gradient)
+    end do
+  end subroutine mass_gradient
+
+  !> Whether a stencil has a node in a window.
+  pure function reaches(stencil, dim, base, window) result(does)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Dimensions.
+    integer, intent(in) :: dim
+    !> First node.
+    integer, intent(in) :: base(3)
+    !> The window.
+    type(window_t), intent(in) :: window
+    !> Whether it has.
+    logical :: does
+
+    does = all(base(:dim) + stencil%width > window%lo(:dim) .and. &
+               base(:dim) < window%lo(:dim) + window%n(:dim))
+  end function reaches
+
+  !> Add one point to the nodes of its stencil that are in the window.
+  pure subroutine add_point(width, dim, base, w, dw, mass, window, gradient)
+    !> Nodes per direction.
+    integer, intent(in) :: width
+    !> Dimensions.
+    integer, intent(in) :: dim
+    !> First node.
+    integer, intent(in) :: base(3)
+    !> Values of the 1D functions.
+    real(wp), intent(in) :: w(width, dim)
+    !> Their derivatives. [1/m]
+    real(wp), intent(in) :: dw(width, dim)
+    !> Mass of the point. [kg]
+    real(wp), intent(in) :: mass
+    !> Window of the gradients.
+    type(window_t), intent(in) :: window
+    !> Gradients, added to. [kg/m]
+    real(wp), intent(inout) :: gradient(:, :)
+    real(wp) :: factor
+    integer :: i, d, e, node(3), local(3), position, rest
+
+    do i = 0, width**dim - 1
+      rest = i
+      local = 0
+      do d = 1, dim
+        local(d) = mod(rest, width)
+        rest = rest/width
+      end do
+      node = base + local
+      if (.not. window%holds(node)) cycle
+      position = window%index(node)
+      do d = 1, dim
+        factor = mass*dw(local(d) + 1, d)
+        do e = 1, dim
+          if (e /= d) factor = factor*w(local(e) + 1, e)
+        end do
+        gradient(d, position) = gradient(d, position) + factor
+      end do
+    end do
+  end subroutine add_point
+
+end module mpm_mass_gradient

@@ -1,0 +1,98 @@
+!> The role `nodes`: the grid as one body sees it.
+module mpm_nodes
+  use mpm_configurable, only: configurable_t
+  use mpm_errors, only: error_t
+  use mpm_field_writer, only: field_writer_t
+  use mpm_kinds, only: wp
+  use mpm_kinematics, only: kinematics_t
+  use mpm_properties, only: properties_t
+  use mpm_window, only: window_t
+  implicit none
+  private
+  public :: nodes_t
+
+  !> Nodal fields of one body, over a window of the grid that follows the body.
+  !!
+  !! The arrays may be longer than the window; only its nodes count. They are formed anew in every
+  !! step, so that a moving window costs nothing.
+  type, abstract, extends(configurable_t) :: nodes_t
+    !> Component counts of the job.
+    type(kinematics_t) :: kin
+    !> The nodes that have memory.
+    type(window_t) :: window
+    !> Mass. [kg] (nn)
+    real(wp), allocatable :: mass(:)
+    !> Momentum. [kg m/s] (nvel, nn)
+    real(wp), allocatable :: momentum(:, :)
+    !> Force: internal and body forces, then contacts and boundaries. [N] (nvel, nn)
+    real(wp), allocatable :: force(:, :)
+    !> Velocity, after the grid update that of the end of the step. [m/s] (nvel, nn)
+    real(wp), allocatable :: velocity(:, :)
+    !> Velocity increment of the step, dt f/m. [m/s] (nvel, nn)
+    real(wp), allocatable :: increment(:, :)
+  contains
+    !> Set up the nodes of a body.
+    procedure(init_i), deferred :: init
+    !> Send the fields of a frame.
+    procedure(write_fields_i), deferred :: write_fields
+    !> Move the window; grow the arrays if they are too short.
+    procedure :: place => nodes_place
+  end type nodes_t
+
+  abstract interface
+    !> Set up the nodes of a body.
+    subroutine init_i(self, kin, properties, error)
+      import :: error_t, kinematics_t, nodes_t, properties_t
+      implicit none
+      !> The nodes.
+      class(nodes_t), intent(inout) :: self
+      !> Component counts.
+      type(kinematics_t), intent(in) :: kin
+      !> Checked properties.
+      type(properties_t), intent(in) :: properties
+      !> Values that do not fit together.
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine init_i
+
+    !> Send the fields of a frame.
+    subroutine write_fields_i(self, dt, writer)
+      import :: field_writer_t, nodes_t, wp
+      implicit none
+      !> The nodes.
+      class(nodes_t), intent(in) :: self
+      !> Length of the last step; 0 before the first. [s]
+      real(wp), intent(in) :: dt
+      !> Receiver of nodal fields.
+      class(field_writer_t), intent(inout) :: writer
+    end subroutine write_fields_i
+  end interface
+
+contains
+
+  !> Move the window; grow the arrays if they are too short.
+  subroutine nodes_place(self, window)
+    !> The nodes.
+    class(nodes_t), intent(inout) :: self
+    !> The new window.
+    type(window_t), intent(in) :: window
+    integer :: capacity
+
+    self%window = window
+    capacity = 0
+    if (allocated(self%mass)) capacity = size(self%mass)
+    if (window%size() <= capacity .and. allocated(self%mass)) return
+    if (allocated(self%mass)) then
+      deallocate (self%mass, self%momentum, self%force, self%velocity, self%increment)
+    end if
+    capacity = window%size() + window%size()/8
+    allocate (self%mass(capacity), self%momentum(self%kin%nvel, capacity))
+    allocate (self%force(self%kin%nvel, capacity), self%velocity(self%kin%nvel, capacity))
+    allocate (self%increment(self%kin%nvel, capacity))
+    self%mass = 0.0_wp
+    self%momentum = 0.0_wp
+    self%force = 0.0_wp
+    self%velocity = 0.0_wp
+    self%increment = 0.0_wp
+  end subroutine nodes_place
+
+end module mpm_nodes

@@ -1,0 +1,223 @@
+!> Points on a lattice, generated from a text.
+module mpm_cartesian_points
+  use mpm_default_points, only: add_points_properties, default_points_t, find_point_file, &
+                                full_width
+  use mpm_description, only: description_t
+  use mpm_document, only: value_t
+  use mpm_errors, only: err_input, error_t, raise
+  use mpm_generator_text, only: generator_text_t, write_points_table
+  use mpm_grid, only: grid_t
+  use mpm_kinds, only: lp, wp
+  use mpm_kinematics, only: kinematics_t
+  use mpm_part_list, only: part_list_t
+  use mpm_properties, only: properties_t
+  use mpm_strings, only: to_text
+  implicit none
+  private
+  public :: cartesian_points_t
+
+  !> Keys of the generator text.
+  character(8), parameter :: known_keys(5) = [character(8) :: 'Lx', 'Nx', 'lmpp', 'rho', 'out_file']
+
+  !> Points at the centres of equal cells, where they lie in any part.
+  type, extends(default_points_t) :: cartesian_points_t
+  contains
+    procedure, nopass :: describe => cartesian_points_describe
+    procedure :: init => cartesian_points_init
+  end type cartesian_points_t
+
+  !> Where points can be, and what they are like.
+  type :: lattice_t
+    !> Component counts.
+    type(kinematics_t) :: kin
+    !> Positions in each direction; 1 in unused ones.
+    integer :: n(3) = 1
+    !> Distance of positions. [m] (dim)
+    real(wp), allocatable :: spacing(:)
+    !> Density. [kg/m3]
+    real(wp) :: density = 0.0_wp
+    !> The shapes to fill.
+    type(part_list_t) :: parts
+  end type lattice_t
+
+contains
+
+  !> Purpose and properties of the class.
+  subroutine cartesian_points_describe(description)
+    !> The description.
+    type(description_t), intent(out) :: description
+    character(*), parameter :: nl = new_line('a')
+
+    call description%init('points', 'CartesianPoints', &
+                          'Points at rest on a lattice, kept where they lie in any of the parts of &
+                          &a generator text, which `point-file` names.', &
+                          'The generator texts of mpm_3d v3', &
+                          '# in the config'//nl// &
+                          '    point-class = "CartesianPoints"'//nl// &
+                          '    point-file = "block.parts"'//nl// &
+                          '# block.parts'//nl// &
+                          'Lx = {1.0, 1.0}     # lengths of the lattice'//nl// &
+                          'Nx = {20, 20}       # its cells'//nl// &
+                          'lmpp = 2            # points in each cell and direction'//nl// &
+                          'rho = 1000          # density'//nl// &
+                          'out_file = "block.points"     # optional: write the table'//nl// &
+                          'part { class = "Box" properties = {0.2, 0.0, 0.8, 0.4} }')
+    call add_points_properties(description)
+    call description%add_note('The spacing is L/(N lmpp), the first position half of it from 0; L &
+                              &and N need not be those of the grid. (mpm3d --list parts)')
+    call description%add_note('out_file is relative to the working directory and can be read by &
+                              &DefaultPoints: TYPE 4 has mass and area of the meridian section in &
+                              &it (mpm_3d: already multiplied by r, and again when read).')
+  end subroutine cartesian_points_describe
+
+  !> Generate the points.
+  subroutine cartesian_points_init(self, grid, properties, point_file, config_file, error)
+    !> The points.
+    class(cartesian_points_t), intent(inout) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Checked properties: without effect.
+    type(properties_t), intent(in) :: properties
+    !> The generator text.
+    type(value_t), intent(in) :: point_file
+    !> The config, beside which a relative path is looked for.
+    character(*), intent(in) :: config_file
+    !> A missing or bad text, no points, or a table that can't be written.
+    type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: path
+    type(generator_text_t) :: text
+    type(lattice_t) :: lattice
+    real(wp), allocatable :: table(:, :)
+    integer, allocatable :: line_of_row(:)
+
+    associate (unused => properties)
+    end associate
+    call find_point_file(point_file, config_file, path, error)
+    if (.not. allocated(error)) call text%open(path, known_keys, error)
+    if (.not. allocated(error)) call read_lattice(text, grid%kin, lattice, error)
+    if (.not. allocated(error)) call make_table(text, lattice, table, line_of_row, error)
+    if (allocated(error)) return
+    call self%init_from_table(grid, table, path, line_of_row, error)
+    if (allocated(error) .or. len(text%out_file) == 0) return
+    call write_points_table(text%out_file, table, error)
+  end subroutine cartesian_points_init
+
+  !> Read the lattice and the parts.
+  subroutine read_lattice(text, kin, lattice, error)
+    !> The generator text.
+    type(generator_text_t), intent(in) :: text
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> The lattice.
+    type(lattice_t), intent(out) :: lattice
+    !> A key that is missing or bad, or a bad part.
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: density(1)
+    integer :: cells(kin%dim), points_per_cell(1)
+
+    lattice%kin = kin
+    allocate (lattice%spacing(kin%dim))
+    call text%read_reals('Lx', lattice%spacing, error)
+    if (.not. allocated(error)) call text%read_integers('Nx', cells, error)
+    if (.not. allocated(error)) call text%read_integers('lmpp', points_per_cell, error)
+    if (.not. allocated(error)) call text%read_reals('rho', density, error)
+    if (.not. allocated(error)) call check_size(text, cells, points_per_cell(1), error)
+    if (.not. allocated(error)) call lattice%parts%init(kin, text%document, error)
+    if (allocated(error)) return
+    lattice%n(:kin%dim) = cells*points_per_cell(1)
+    lattice%spacing = lattice%spacing/real(lattice%n(:kin%dim), wp)
+    lattice%density = density(1)
+  end subroutine read_lattice
+
+  !> Refuse a lattice with more positions than indices exist.
+  subroutine check_size(text, cells, points_per_cell, error)
+    !> The generator text.
+    type(generator_text_t), intent(in) :: text
+    !> Cells of the lattice. (dim)
+    integer, intent(in) :: cells(:)
+    !> Points in each cell and direction.
+    integer, intent(in) :: points_per_cell
+    !> Too many.
+    type(error_t), allocatable, intent(out) :: error
+    integer(lp) :: total
+    integer :: d
+
+    total = 1
+    do d = 1, size(cells)
+      ! Each factor is below 2**31, so that the first product fits.
+      total = total*cells(d)
+      if (total <= huge(1)) total = total*points_per_cell
+      if (total > huge(1)) exit
+    end do
+    if (d > size(cells)) return
+    call raise(error, err_input, 'the lattice has more than '//to_text(huge(1))//' positions', &
+               file=text%document%path, line=text%line_of('Nx'), &
+               hint='use fewer cells (Nx) or fewer points in a cell (lmpp)')
+  end subroutine check_size
+
+  !> Rows of a points table for all positions that lie in a part.
+  subroutine make_table(text, lattice, table, line_of_row, error)
+    !> The generator text.
+    type(generator_text_t), intent(in) :: text
+    !> The lattice.
+    type(lattice_t), intent(in) :: lattice
+    !> Mass, volume, position, velocity, active. (columns, n)
+    real(wp), allocatable, intent(out) :: table(:, :)
+    !> Line of the part of each point. (n)
+    integer, allocatable, intent(out) :: line_of_row(:)
+    !> No point, or too many for the memory.
+    type(error_t), allocatable, intent(out) :: error
+    integer :: n, status
+
+    call visit_positions(lattice, n)
+    if (n == 0) then
+      call raise(error, err_input, 'no point of the lattice lies in a part', &
+                 file=text%document%path, hint='the lattice fills the box from 0 to Lx: check '// &
+                 'the parts against it, or use more points')
+      return
+    end if
+    allocate (table(full_width(lattice%kin), n), line_of_row(n), stat=status)
+    if (status /= 0) then
+      call raise(error, err_input, to_text(n)//' points are too many for the memory', &
+                 file=text%document%path)
+      return
+    end if
+    call visit_positions(lattice, n, table, line_of_row)
+  end subroutine make_table
+
+  !> Count the positions that lie in a part, the first direction slowest, and fill their rows.
+  subroutine visit_positions(lattice, n, table, line_of_row)
+    !> The lattice.
+    type(lattice_t), intent(in) :: lattice
+    !> Number of positions in parts.
+    integer, intent(out) :: n
+    !> Mass, volume, position, velocity, active. (columns, n)
+    real(wp), intent(inout), optional :: table(:, :)
+    !> Line of the part of each point. (n)
+    integer, intent(inout), optional :: line_of_row(:)
+    real(wp) :: x(size(lattice%spacing)), volume
+    integer :: i, j, k, part, at(3)
+
+    volume = product(lattice%spacing)
+    n = 0
+    do i = 0, lattice%n(1) - 1
+      do j = 0, lattice%n(2) - 1
+        do k = 0, lattice%n(3) - 1
+          at = [i, j, k]
+          x = (real(at(:size(x)), wp) + 0.5_wp)*lattice%spacing
+          part = lattice%parts%find(x)
+          if (part == 0) cycle
+          n = n + 1
+          if (.not. (present(table) .and. present(line_of_row))) cycle
+          table(:, n) = 0.0_wp
+          table(1, n) = lattice%density*volume
+          table(2, n) = volume
+          table(3:2 + size(x), n) = x
+          table(size(table, 1), n) = 1.0_wp
+          line_of_row(n) = lattice%parts%slots(part)%line
+        end do
+      end do
+    end do
+  end subroutine visit_positions
+
+end module mpm_cartesian_points

@@ -1,0 +1,278 @@
+!> The role `points`: the material points of one body.
+module mpm_points
+  use mpm_configurable, only: configurable_t
+  use mpm_errors, only: error_t
+  use mpm_field_writer, only: field_writer_t
+  use mpm_grid, only: grid_t
+  use mpm_kinds, only: wp
+  use mpm_kinematics, only: kinematics_t
+  use mpm_document, only: value_t
+  use mpm_properties, only: properties_t
+  use mpm_sort, only: base_bounds, sort_by_cell
+  use mpm_stencil, only: outside, stencil_keys, stencil_t
+  implicit none
+  private
+  public :: points_t
+
+  !> Material points as arrays, component first.
+  !!
+  !! The arrays are in storage order: cell by cell at the last full sort, points that are inactive
+  !! or outside the grid at the end, behind `n_inside`. `id` gives the position in the file.
+  type, abstract, extends(configurable_t) :: points_t
+    !> Component counts of the job.
+    type(kinematics_t) :: kin
+    !> Number of points.
+    integer :: n = 0
+    !> Number of points that are active and inside the grid; they are stored first.
+    integer :: n_inside = 0
+    !> Number of points that were active at the start and have left the grid.
+    integer :: n_lost = 0
+    !> Position in the points file, from 1. (n)
+    integer, allocatable :: id(:)
+    !> Mass. [kg] (n)
+    real(wp), allocatable :: mass(:)
+    !> Volume. [m3] (n)
+    real(wp), allocatable :: volume(:)
+    !> Half side of the point's box, of its initial volume. [m] (n)
+    real(wp), allocatable :: extent(:)
+    !> Position. [m] (dim, n)
+    real(wp), allocatable :: x(:, :)
+    !> Displacement. [m] (nvel, n)
+    real(wp), allocatable :: displacement(:, :)
+    !> Velocity. [m/s] (nvel, n)
+    real(wp), allocatable :: velocity(:, :)
+    !> Cauchy stress. [Pa] (nstress, n)
+    real(wp), allocatable :: stress(:, :)
+    !> Velocity gradient of the last step that was asked to keep it; 0 before. [1/s] (ngrad, n)
+    real(wp), allocatable :: gradient(:, :)
+    !> Acceleration by the body force, the same for all points. [m/s2]
+    real(wp) :: body_force(3) = 0.0_wp
+    !> Key of the stencil, or `outside`. (n)
+    integer, allocatable :: key(:)
+    !> Slots of the points inside in the order of their cells. (n_inside)
+    integer, allocatable :: order(:)
+    !> Points before each row of cells in `order`. (0:rows)
+    integer, allocatable :: row_offset(:)
+    !> Lowest and highest first node of all stencils.
+    integer :: lo(3) = 0, hi(3) = -1
+    !> Points whose key changed since `order` was made.
+    integer :: n_changed = 0
+    !> Points whose key changed since the arrays were sorted.
+    integer :: n_drifted = 0
+  contains
+    !> Read or make the points.
+    procedure(init_i), deferred :: init
+    !> Send the fields of a frame.
+    procedure(write_fields_i), deferred :: write_fields
+    !> Give all arrays their length.
+    procedure :: allocate => points_allocate
+    !> Find the keys of all points for a basis.
+    procedure :: locate => points_locate
+    !> Bring the order of cells up to date; switch off points that left the grid.
+    procedure :: refresh_order => points_refresh_order
+    !> Put all arrays into another order.
+    procedure :: permute => points_permute
+    !> Storage slot of each point of the points file.
+    procedure :: slots => points_slots
+  end type points_t
+
+  abstract interface
+    !> Read or make the points.
+    subroutine init_i(self, grid, properties, point_file, config_file, error)
+      import :: error_t, grid_t, points_t, properties_t, value_t
+      implicit none
+      !> The points.
+      class(points_t), intent(inout) :: self
+      !> The grid; gives the component counts and tells which positions are inside.
+      class(grid_t), intent(in) :: grid
+      !> Checked properties.
+      type(properties_t), intent(in) :: properties
+      !> The key `point-file`.
+      type(value_t), intent(in) :: point_file
+      !> The config, beside which a relative path is looked for.
+      character(*), intent(in) :: config_file
+      !> A missing or bad points file.
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine init_i
+
+    !> Send the fields of a frame.
+    subroutine write_fields_i(self, writer)
+      import :: field_writer_t, points_t
+      implicit none
+      !> The points.
+      class(points_t), intent(in) :: self
+      !> Receiver of point fields.
+      class(field_writer_t), intent(inout) :: writer
+    end subroutine write_fields_i
+  end interface
+
+contains
+
+  !> Give all arrays their length; everything is 0 and in the order of the points file.
+  subroutine points_allocate(self, kin, n)
+    !> The points.
+    class(points_t), intent(inout) :: self
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    integer :: i
+
+    self%kin = kin
+    self%n = n
+    self%n_inside = n
+    allocate (self%id(n), self%mass(n), self%volume(n), self%extent(n), self%key(n))
+    allocate (self%x(kin%dim, n), self%displacement(kin%nvel, n), self%velocity(kin%nvel, n))
+    allocate (self%stress(kin%nstress, n), self%order(n))
+    self%id = [(i, i=1, n)]
+    self%mass = 0.0_wp
+    self%volume = 0.0_wp
+    self%extent = 0.0_wp
+    self%key = outside
+    self%x = 0.0_wp
+    self%displacement = 0.0_wp
+    self%velocity = 0.0_wp
+    self%stress = 0.0_wp
+  end subroutine points_allocate
+
+  !> Find the keys of all points for a basis and sort the arrays by cell.
+  subroutine points_locate(self, stencil)
+    !> The points.
+    class(points_t), intent(inout) :: self
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+
+    call stencil_keys(stencil, self%n_inside, self%x(:, :self%n_inside), &
+                      self%extent(:self%n_inside), self%key(:self%n_inside))
+    call base_bounds(stencil, self%n_inside, self%key(:self%n_inside), self%lo, self%hi)
+    self%n_changed = 1
+    self%n_drifted = self%n
+    call self%refresh_order(stencil)
+  end subroutine points_locate
+
+  !> Bring the order of cells up to date; switch off points that left the grid.
+  !!
+  !! Only the list `order` is made anew when points changed their cell; the arrays themselves are
+  !! sorted when an eighth of the points have, or when a point must go to the end.
+  subroutine points_refresh_order(self, stencil)
+    !> The points.
+    class(points_t), intent(inout) :: self
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    integer :: n_left, p, k, inside_now
+    integer, allocatable :: order(:)
+
+    if (self%n_changed == 0) return
+    self%n_changed = 0
+    n_left = count(self%key(:self%n_inside) == outside)
+    if (n_left > 0) then
+      inside_now = self%n_inside - n_left
+      allocate (order(self%n))
+      k = 0
+      do p = 1, self%n_inside
+        if (self%key(p) == outside) then
+          order(inside_now + p - k) = p
+        else
+          k = k + 1
+          order(k) = p
+        end if
+      end do
+      order(self%n_inside + 1:) = [(p, p=self%n_inside + 1, self%n)]
+      call self%permute(order)
+      deallocate (order)
+      self%n_inside = inside_now
+      self%n_lost = self%n_lost + n_left
+    end if
+    if (self%n_inside == 0) return
+    call sort_by_cell(stencil, self%n_inside, self%key(:self%n_inside), self%lo, self%hi, &
+                      self%order(:self%n_inside), self%row_offset)
+    if (8*self%n_drifted < self%n_inside) return
+    self%n_drifted = 0
+    allocate (order(self%n))
+    order(:self%n_inside) = self%order(:self%n_inside)
+    order(self%n_inside + 1:) = [(p, p=self%n_inside + 1, self%n)]
+    call self%permute(order)
+    self%order(:self%n_inside) = [(p, p=1, self%n_inside)]
+  end subroutine points_refresh_order
+
+  !> Put all arrays into another order: slot i receives what was in slot order(i).
+  subroutine points_permute(self, order)
+    !> The points.
+    class(points_t), intent(inout) :: self
+    !> A permutation of the slots. (n)
+    integer, intent(in) :: order(:)
+
+    call permute_integers(order, self%id)
+    call permute_integers(order, self%key)
+    call permute_scalars(order, self%mass)
+    call permute_scalars(order, self%volume)
+    call permute_scalars(order, self%extent)
+    call permute_vectors(order, self%x)
+    call permute_vectors(order, self%displacement)
+    call permute_vectors(order, self%velocity)
+    call permute_vectors(order, self%stress)
+    if (allocated(self%gradient)) call permute_vectors(order, self%gradient)
+  end subroutine points_permute
+
+  !> Permute integers.
+  pure subroutine permute_integers(order, values)
+    !> A permutation. (n)
+    integer, intent(in) :: order(:)
+    !> Values. (n)
+    integer, allocatable, intent(inout) :: values(:)
+    integer, allocatable :: copy(:)
+    integer :: i
+
+    call move_alloc(values, copy)
+    allocate (values(size(order)))
+    do i = 1, size(order)
+      values(i) = copy(order(i))
+    end do
+  end subroutine permute_integers
+
+  !> Permute reals.
+  pure subroutine permute_scalars(order, values)
+    !> A permutation. (n)
+    integer, intent(in) :: order(:)
+    !> Values. (n)
+    real(wp), allocatable, intent(inout) :: values(:)
+    real(wp), allocatable :: copy(:)
+    integer :: i
+
+    call move_alloc(values, copy)
+    allocate (values(size(order)))
+    do i = 1, size(order)
+      values(i) = copy(order(i))
+    end do
+  end subroutine permute_scalars
+
+  !> Permute columns.
+  pure subroutine permute_vectors(order, values)
+    !> A permutation. (n)
+    integer, intent(in) :: order(:)
+    !> Values. (components, n)
+    real(wp), allocatable, intent(inout) :: values(:, :)
+    real(wp), allocatable :: copy(:, :)
+    integer :: i
+
+    call move_alloc(values, copy)
+    allocate (values(size(copy, 1), size(order)))
+    do i = 1, size(order)
+      values(:, i) = copy(:, order(i))
+    end do
+  end subroutine permute_vectors
+
+  !> Storage slot of each point of the points file.
+  pure function points_slots(self) result(slot)
+    !> The points.
+    class(points_t), intent(in) :: self
+    !> Slot by position in the file. (n)
+    integer :: slot(self%n)
+    integer :: p
+
+    do p = 1, self%n
+      slot(self%id(p)) = p
+    end do
+  end function points_slots
+
+end module mpm_points

@@ -1,0 +1,381 @@
+!> The parts of an explicit step, from which the explicit solvers are put together.
+module mpm_explicit_steps
+  use mpm_advance, only: advance_points
+  use mpm_body, only: body_t
+  use mpm_errors, only: err_simulation, error_t, raise
+  use mpm_g2p, only: g2p
+  use mpm_kinds, only: lp, wp
+  use mpm_material, only: material_t
+  use mpm_model, only: model_t
+  use mpm_nodes, only: nodes_t
+  use mpm_points, only: points_t
+  use mpm_scatter, only: scatter
+  use mpm_sort, only: base_bounds
+  use mpm_stencil, only: block_size, stencil_keys, stencil_t
+  use mpm_strings, only: to_text
+  use mpm_threads, only: useful_threads
+  use mpm_window, only: window_t
+  implicit none
+  private
+  public :: body_stable_step, locate_points, map_to_nodes, update_nodes, update_points
+
+  !> Why a block of points stopped the run.
+  integer, parameter :: went_well = 0, bad_motion = 1, bad_stress = 2
+
+contains
+
+  !> Choose the basis of a body and sort its points by cell.
+  subroutine locate_points(model, body, averaged, error)
+    !> The model.
+    type(model_t), intent(inout) :: model
+    !> Position of the body in the model's list.
+    integer, intent(in) :: body
+    !> Average the basis over the corners of the points' boxes.
+    logical, intent(in) :: averaged
+    !> Points that the basis can't take.
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (item => model%bodies(body)%body)
+      call model%grid%make_stencil(averaged, maxval(item%points%extent), item%stencil, error)
+      if (allocated(error)) then
+        error%message = 'body "'//item%name//'": '//error%message
+        return
+      end if
+      call item%points%locate(item%stencil)
+    end associate
+  end subroutine locate_points
+
+  !> Map a body to its nodes: mass, momentum, velocity, internal force and body force.
+  subroutine map_to_nodes(body, threads)
+    !> The body.
+    class(body_t), intent(inout) :: body
+    !> Number of threads.
+    integer, intent(in) :: threads
+    type(window_t) :: window
+    integer :: n, dim
+
+    call body%points%refresh_order(body%stencil)
+    n = body%points%n_inside
+    dim = body%stencil%dim
+    if (n > 0) then
+      window%lo = body%points%lo
+      window%n = 1
+      window%n(:dim) = body%points%hi(:dim) - body%points%lo(:dim) + body%stencil%width
+    end if
+    call body%nodes%place(window)
+    if (n == 0) return
+    associate (points => body%points, nodes => body%nodes)
+      call scatter(points%kin, body%stencil, window, useful_threads(threads, n), n, &
+                   points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
+                   points%extent(:n), points%mass(:n), points%volume(:n), &
+                   points%velocity(:, :n), points%stress(:, :n), nodes%mass, nodes%momentum, nodes%force)
+      call finish_mapping(points%kin%nvel, window%size(), threads, points%body_force, nodes%mass, &
+                          nodes%momentum, nodes%force, nodes%velocity, nodes%increment)
+    end associate
+  end subroutine map_to_nodes
+
+  !> Add the body force and form the nodal velocities.
+  subroutine finish_mapping(nvel, n, threads, body_force, mass, momentum, force, velocity, &
+                            increment)
+    !> Components of a vector.
+    integer, intent(in) :: nvel
+    !> Number of nodes.
+    integer, intent(in) :: n
+    !> Number of threads.
+    integer, intent(in) :: threads
+    !> Acceleration by the body force. [m/s2]
+    real(wp), intent(in) :: body_force(3)
+    !> Nodal masses. [kg]
+    real(wp), intent(in) :: mass(n)
+    !> Nodal momenta. [kg m/s]
+    real(wp), intent(in) :: momentum(nvel, n)
+    !> Nodal forces. [N]
+    real(wp), intent(inout) :: force(nvel, n)
+    !> Nodal velocities. [m/s]
+    real(wp), intent(out) :: velocity(nvel, n)
+    !> Velocity increments: none yet. [m/s]
+    real(wp), intent(out) :: increment(nvel, n)
+    integer :: i
+
+    !$omp parallel do default(none) num_threads(useful_threads(threads, n)) schedule(static) &
+    !$omp shared(nvel, n, body_force, mass, momentum, force, velocity, increment) private(i)
+    do i = 1, n
+      increment(:, i) = 0.0_wp
+      if (mass(i) > 0.0_wp) then
+        force(:, i) = force(:, i) + mass(i)*body_force(:nvel)
+        velocity(:, i) = momentum(:, i)/mass(i)
+      else
+        velocity(:, i) = 0.0_wp
+      end if
+    end do
+    !$omp end parallel do
+  end subroutine finish_mapping
+
+  !> Advance the nodal momenta: P += dt f, v = P/m, dv = dt f/m.
+  subroutine update_nodes(nodes, dt, threads)
+    !> The nodes.
+    class(nodes_t), intent(inout) :: nodes
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Number of threads.
+    integer, intent(in) :: threads
+
+    call advance_nodes(nodes%kin%nvel, nodes%window%size(), threads, dt, nodes%mass, nodes%force, &
+                       nodes%momentum, nodes%velocity, nodes%increment)
+  end subroutine update_nodes
+
+  !> Advance nodal momenta.
+  subroutine advance_nodes(nvel, n, threads, dt, mass, force, momentum, velocity, increment)
+    !> Components of a vector.
+    integer, intent(in) :: nvel
+    !> Number of nodes.
+    integer, intent(in) :: n
+    !> Number of threads.
+    integer, intent(in) :: threads
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Nodal masses. [kg]
+    real(wp), intent(in) :: mass(n)
+    !> Nodal forces. [N]
+    real(wp), intent(in) :: force(nvel, n)
+    !> Nodal momenta. [kg m/s]
+    real(wp), intent(inout) :: momentum(nvel, n)
+    !> Nodal velocities. [m/s]
+    real(wp), intent(out) :: velocity(nvel, n)
+    !> Velocity increments of the step. [m/s]
+    real(wp), intent(out) :: increment(nvel, n)
+    integer :: i
+
+    !$omp parallel do default(none) num_threads(useful_threads(threads, n)) schedule(static) &
+    !$omp shared(nvel, n, dt, mass, force, momentum, velocity, increment) private(i)
+    do i = 1, n
+      if (mass(i) > 0.0_wp) then
+        momentum(:, i) = momentum(:, i) + dt*force(:, i)
+        velocity(:, i) = momentum(:, i)/mass(i)
+        increment(:, i) = dt*force(:, i)/mass(i)
+      else
+        velocity(:, i) = 0.0_wp
+        increment(:, i) = 0.0_wp
+      end if
+    end do
+    !$omp end parallel do
+  end subroutine advance_nodes
+
+  !> Advance the points of a body with the grid, then their stress.
+  subroutine update_points(model, body, dt, keep_gradient, error)
+    !> The model.
+    type(model_t), intent(inout) :: model
+    !> Position of the body in the model's list.
+    integer, intent(in) :: body
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Store the velocity gradients.
+    logical, intent(in) :: keep_gradient
+    !> A point is not finite, moved more than a cell or lost its volume.
+    type(error_t), allocatable, intent(out) :: error
+    integer, allocatable :: slot(:), cause(:)
+    integer :: blocks, first_bad, i
+
+    associate (item => model%bodies(body)%body)
+      if (item%points%n_inside == 0) return
+      blocks = (item%points%n_inside + block_size - 1)/block_size
+      allocate (slot(blocks), cause(blocks))
+      if (allocated(item%material)) then
+        call sweep_blocks(item%points, item%nodes, item%stencil, model%threads, dt, &
+                          keep_gradient, slot, cause, item%material)
+      else
+        call sweep_blocks(item%points, item%nodes, item%stencil, model%threads, dt, &
+                          keep_gradient, slot, cause)
+      end if
+      first_bad = 0
+      do i = 1, blocks
+        if (slot(i) == 0) cycle
+        if (first_bad == 0) first_bad = i
+        if (item%points%id(slot(i)) < item%points%id(slot(first_bad))) first_bad = i
+      end do
+      if (first_bad > 0) then
+        call raise_bad_point(model, item, slot(first_bad), cause(first_bad), dt, error)
+      end if
+    end associate
+  end subroutine update_points
+
+  !> Visit the points of a body in blocks on all threads.
+  subroutine sweep_blocks(points, nodes, stencil, threads, dt, keep_gradient, slot, cause, material)
+    !> The points.
+    class(points_t), intent(inout) :: points
+    !> Their nodes, after the grid update.
+    class(nodes_t), intent(in) :: nodes
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Number of threads.
+    integer, intent(in) :: threads
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Store the velocity gradients.
+    logical, intent(in) :: keep_gradient
+    !> First bad point of each block, or 0. (blocks)
+    integer, intent(out) :: slot(:)
+    !> What is wrong with it. (blocks)
+    integer, intent(out) :: cause(:)
+    !> Constitutive law.
+    class(material_t), intent(in), optional :: material
+    integer :: block, lo(3), hi(3), block_lo(3), block_hi(3), n_changed, changed
+
+    lo = huge(1)
+    hi = -1
+    n_changed = 0
+    !$omp parallel do default(none) schedule(static) &
+    !$omp num_threads(useful_threads(threads, points%n_inside)) &
+    !$omp shared(points, nodes, stencil, dt, keep_gradient, slot, cause, material) &
+    !$omp private(block, block_lo, block_hi, changed) &
+    !$omp reduction(min:lo) reduction(max:hi) reduction(+:n_changed)
+    do block = 1, size(slot)
+      call update_block(points, nodes, stencil, dt, keep_gradient, block, slot(block), &
+                        cause(block), block_lo, block_hi, changed, material)
+      lo = min(lo, block_lo)
+      hi = max(hi, block_hi)
+      n_changed = n_changed + changed
+    end do
+    !$omp end parallel do
+    points%lo = lo
+    points%hi = hi
+    points%n_changed = points%n_changed + n_changed
+    points%n_drifted = points%n_drifted + n_changed
+  end subroutine sweep_blocks
+
+  !> Interpolate to one block of points, move them, update their stress and their keys.
+  subroutine update_block(points, nodes, stencil, dt, keep_gradient, block, slot, cause, lo, hi, &
+                          changed, material)
+    !> The points; the blocks of different threads do not overlap.
+    class(points_t), intent(inout) :: points
+    !> Their nodes, after the grid update.
+    class(nodes_t), intent(in) :: nodes
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Store the velocity gradients.
+    logical, intent(in) :: keep_gradient
+    !> Number of the block, from 1.
+    integer, intent(in) :: block
+    !> First bad point, or 0.
+    integer, intent(out) :: slot
+    !> What is wrong with it.
+    integer, intent(out) :: cause
+    !> Smallest first node of the new stencils.
+    integer, intent(out) :: lo(3)
+    !> Largest first node of the new stencils.
+    integer, intent(out) :: hi(3)
+    !> Points whose key changed.
+    integer, intent(out) :: changed
+    !> Constitutive law.
+    class(material_t), intent(in), optional :: material
+    real(wp) :: velocity(3*block_size), increment(3*block_size), gradient(9*block_size)
+    integer :: key(block_size), a, b, n
+
+    a = (block - 1)*block_size + 1
+    b = min(block*block_size, points%n_inside)
+    n = b - a + 1
+    associate (kin => points%kin)
+      call g2p(kin, stencil, nodes%window, n, points%key(a:b), points%x(:, a:b), &
+               points%extent(a:b), nodes%velocity, nodes%increment, velocity, increment, gradient)
+      call advance_points(kin, stencil, n, dt, velocity, increment, gradient, points%x(:, a:b), &
+                          points%displacement(:, a:b), points%velocity(:, a:b), &
+                          points%volume(a:b), slot)
+      if (keep_gradient) then
+        points%gradient(:, a:b) = reshape(gradient(:kin%ngrad*n), [kin%ngrad, n])
+      end if
+    end associate
+    cause = bad_motion
+    lo = huge(1)
+    hi = -1
+    changed = 0
+    if (slot == 0) then
+      cause = went_well
+      if (present(material)) then
+        call material%update_stress(n, dt, gradient, points%mass(a:b), points%volume(a:b), &
+                                    points%stress(:, a:b), slot)
+        if (slot > 0) cause = bad_stress
+      end if
+      call stencil_keys(stencil, n, points%x(:, a:b), points%extent(a:b), key)
+      changed = count(key(:n) /= points%key(a:b))
+      points%key(a:b) = key(:n)
+      call base_bounds(stencil, n, key, lo, hi)
+    end if
+    if (slot > 0) slot = slot + a - 1
+  end subroutine update_block
+
+  !> The error that stops a run that went bad.
+  subroutine raise_bad_point(model, body, slot, cause, dt, error)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The body.
+    class(body_t), intent(in) :: body
+    !> Slot of the point.
+    integer, intent(in) :: slot
+    !> What is wrong.
+    integer, intent(in) :: cause
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> The error.
+    type(error_t), allocatable, intent(inout) :: error
+    character(:), allocatable :: what, hint
+    real(wp) :: speed, limit
+
+    if (cause == bad_stress) then
+      what = 'has no admissible stress'
+    else if (.not. abs(body%points%volume(slot)) <= huge(1.0_wp) .or. &
+             any(.not. abs(body%points%x(:, slot)) <= huge(1.0_wp))) then
+      what = 'is no longer finite'
+    else if (.not. body%points%volume(slot) > 0.0_wp) then
+      what = 'has lost its volume'
+    else
+      what = 'moved more than a cell'
+    end if
+    call body_stable_step(model%grid%spacing(), body, speed, limit)
+    if (dt > limit) then
+      hint = 'dt is above the stable step of this body, '//to_text(limit)//' s: use a smaller dt'
+    else
+      hint = 'likely causes: a dt too large for the speed of the points, too few points in a cell, &
+             &or loads that crush the material'
+    end if
+    call raise(error, err_simulation, 'body "'//body%name//'": point '// &
+               to_text(body%points%id(slot))//' '//what//' in step '// &
+               to_text(model%step + 1_lp)//', t = '//to_text(model%time)//' s', hint=hint)
+  end subroutine raise_bad_point
+
+  !> Largest stable time step of a body with FLIP and stress update last.
+  !!
+  !! A mode of wave number k is stable for c**2 K dt**2 <= 4/(2 - mu). With n points per cell and
+  !! direction the hats give K = 4 s/h**2 and mu = 1 - (2/3 + 1/(3 n**2)) s, s = sin**2(k h/2); the
+  !! worst mode is s = 1: c dt/h <= 1/sqrt(5/3 + 1/(3 n**2)). In several dimensions K is at most the
+  !! sum over the directions, hence the safe bound c dt sqrt(sum 1/h_d**2) <= the same number.
+  pure subroutine body_stable_step(spacing, body, wave_speed, limit)
+    !> Spacing of the grid. [m]
+    real(wp), intent(in) :: spacing(3)
+    !> The body.
+    class(body_t), intent(in) :: body
+    !> Largest wave speed; 0 without a material. [m/s]
+    real(wp), intent(out) :: wave_speed
+    !> Largest stable step; huge when nothing bounds it. [s]
+    real(wp), intent(out) :: limit
+    real(wp) :: per_cell, courant
+    integer :: n, dim
+
+    wave_speed = 0.0_wp
+    limit = huge(1.0_wp)
+    n = body%points%n_inside
+    dim = body%points%kin%dim
+    if (n == 0 .or. .not. allocated(body%material)) return
+    wave_speed = body%material%wave_speed(n, body%points%mass(:n), body%points%volume(:n), &
+                                          body%points%stress(:, :n))
+    if (.not. wave_speed > 0.0_wp) return
+    ! The mean over the points of h divided by the size of the point: points per cell and direction.
+    per_cell = (product(spacing(:dim))*real(n, wp)/sum((2.0_wp*body%points%extent(:n))**dim)) &
+      **(1.0_wp/real(dim, wp))
+    per_cell = max(1.0_wp, per_cell)
+    courant = 1.0_wp/sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))
+    limit = courant/(wave_speed*sqrt(sum(1.0_wp/spacing(:dim)**2)))
+  end subroutine body_stable_step
+
+end module mpm_explicit_steps
