@@ -95,6 +95,8 @@ contains
         call drag(mass*walls(face)%vector(:size(force)), &
                   walls(face)%limit*walls(face)%filled_area(n), dt, momentum, force)
         return
+      case default
+        cycle
       end select
     end do
     if (any(largest > 0.0_wp)) call rub(norm2(largest), dt, momentum, force)

@@ -172,6 +172,8 @@ contains
     case (wall_bounded)
       wall%vector(:nvel) = values(:nvel)
       wall%limit = values(nvel + 1)
+    case default
+      return
     end select
     takes = trim(face_names(face))//' = '//to_text(wall%code)//' takes '// &
             value_names(faces%kin, wall%code)

@@ -143,7 +143,9 @@ contains
       case (wall_friction)
         call keep_own_force(axis_of(face), nodes, self%walls(face))
       case (wall_traction, wall_bounded)
-        call fill_area(self, face, grid, points, self%walls(face))
+        call fill_area(self%faces, self%stencil, face, grid, points, self%walls(face))
+      case default
+        cycle
       end select
     end do
   end subroutine custom_generate
@@ -171,9 +173,11 @@ contains
   end subroutine keep_own_force
 
   !> Area of a wall at its nodes, times the fraction that is filled with points.
-  subroutine fill_area(self, face, grid, points, wall)
-    !> The boundary.
-    class(cartesian_box_custom_t), intent(in) :: self
+  subroutine fill_area(faces, stencil, face, grid, points, wall)
+    !> The faces.
+    type(box_faces_t), intent(in) :: faces
+    !> The grid's functions at the points.
+    type(stencil_t), intent(in) :: stencil
     !> Face of the wall.
     integer, intent(in) :: face
     !> The grid.
@@ -186,7 +190,7 @@ contains
 
     call resize(wall%filled_area, wall%part%size())
     if (size(wall%filled_area) == 0) return
-    call nodal_volume(points%kin, self%stencil, wall%part, points%n_inside, &
+    call nodal_volume(points%kin, stencil, wall%part, points%n_inside, &
                       points%order(:points%n_inside), points%x, points%extent, points%volume, &
                       wall%filled_area)
     hi = wall%part%hi()
@@ -195,7 +199,7 @@ contains
         do i = wall%part%lo(1), hi(1)
           node = [i, j, k]
           n = wall%part%index(node)
-          wall%filled_area(n) = self%faces%area(face, node)*wall%filled_area(n) &
+          wall%filled_area(n) = faces%area(face, node)*wall%filled_area(n) &
                                 /grid%node_volume(node)
         end do
       end do

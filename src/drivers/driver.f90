@@ -139,6 +139,7 @@ contains
     call monitor%begin(model, solver, steps)
     call serializer%write_frame(model, error)
     if (allocated(error)) return
+    call monitor%frame(model, serializer%frames)
     do while (model%step < steps)
       call self%before_step(model)
       t_next = model%t_start + real(model%step + 1, wp)*model%dt
@@ -157,6 +158,7 @@ contains
         call monitor%check(model, solver)
         call serializer%write_frame(model, error)
         if (allocated(error)) return
+        call monitor%frame(model, serializer%frames)
       end if
       call monitor%progress(model, steps, serializer%frames)
     end do

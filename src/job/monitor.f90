@@ -47,6 +47,8 @@ module mpm_monitor
     procedure :: begin => monitor_begin
     !> Compare the stable steps with dt; report points that left the grid.
     procedure :: check => monitor_check
+    !> A frame has been written.
+    procedure :: frame => monitor_frame
     !> End of a step.
     procedure :: progress => monitor_progress
     !> End of the run.
@@ -74,7 +76,7 @@ contains
 
     call measure(model, self%at_start)
     self%shows_progress = is_terminal(standard_output)
-    if (self%verbosity < normal) self%shows_progress = .false.
+    if (self%verbosity /= normal) self%shows_progress = .false.
     allocate (self%warned(size(model%bodies)))
     self%warned = .false.
     call self%check(model, solver)
@@ -112,6 +114,20 @@ contains
                      ' left the grid by t = '//to_text(model%time)//' s and no longer move')
     end if
   end subroutine monitor_check
+
+  !> A frame has been written.
+  subroutine monitor_frame(self, model, frames)
+    !> The monitor.
+    class(monitor_t), intent(in) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> Frames written so far.
+    integer, intent(in) :: frames
+
+    if (self%verbosity < verbose) return
+    call self%say('frame '//to_text(frames - 1)//' at t = '//to_text(model%time)//' s, step '// &
+                  to_text(model%step))
+  end subroutine monitor_frame
 
   !> End of a step.
   subroutine monitor_progress(self, model, steps, frames)

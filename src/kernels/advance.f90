@@ -2,7 +2,7 @@
 module mpm_advance
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t, type_1d, type_3d, type_axisymmetric
-  use mpm_stencil, only: axis_fraction, stencil_t
+  use mpm_stencil, only: axis_fraction, block_size, stencil_t
   implicit none
   private
   public :: advance_points, exponential, trace_of_gradient
@@ -20,7 +20,7 @@ contains
     type(kinematics_t), intent(in) :: kin
     !> Basis, for the spacing of the grid.
     type(stencil_t), intent(in) :: stencil
-    !> Number of points.
+    !> Number of points, at most `block_size`.
     integer, intent(in) :: n
     !> Time step. [s]
     real(wp), intent(in) :: dt
@@ -40,32 +40,89 @@ contains
     real(wp), intent(inout) :: volume(n)
     !> First point that is not finite, moves more than a cell or loses its volume; 0 when none does.
     integer, intent(out) :: first_bad
-    real(wp) :: trace(n), stretch(n), move
-    integer :: p, d
-    logical :: good
+    real(wp) :: trace(block_size), stretch(block_size)
+    integer :: n_bad, p
 
     call trace_of_gradient(kin, n, gradient, trace)
-    trace = dt*trace
+    trace(:n) = dt*trace(:n)
     call exponential(n, trace, stretch)
+    call add_scaled(kin%nvel*n, 1.0_wp, increment, velocity)
     if (kin%sim_type == type_axisymmetric) then
-      velocity = velocity + increment
       call turn_basis(n, dt, axis_fraction*stencil%h(1), x, velocity)
-    else
-      velocity = velocity + increment
     end if
-    first_bad = 0
+    call add_scaled(kin%nvel*n, dt, grid_velocity, displacement)
+    if (kin%dim == kin%nvel) then
+      call add_scaled(kin%nvel*n, dt, grid_velocity, x)
+    else
+      do p = 1, n
+        x(:, p) = x(:, p) + dt*grid_velocity(:kin%dim, p)
+      end do
+    end if
+    n_bad = 0
     do p = 1, n
       volume(p) = volume(p)*stretch(p)
-      good = volume(p) > 0.0_wp .and. volume(p) <= huge(1.0_wp)
-      do d = 1, kin%dim
-        move = dt*grid_velocity(d, p)
-        x(d, p) = x(d, p) + move
-        good = good .and. abs(move) <= stencil%h(d)
-      end do
-      displacement(:, p) = displacement(:, p) + dt*grid_velocity(:, p)
-      if (.not. good .and. first_bad == 0) first_bad = p
+      if (.not. (volume(p) > 0.0_wp .and. volume(p) <= huge(1.0_wp))) n_bad = n_bad + 1
     end do
+    n_bad = n_bad + count_above(kin%nvel*n, minval(stencil%h(:kin%dim))/dt, grid_velocity)
+    first_bad = 0
+    if (n_bad > 0) call find_bad(kin, stencil%h, n, dt, grid_velocity, volume, first_bad)
   end subroutine advance_points
+
+  !> y += a x.
+  pure subroutine add_scaled(n, a, x, y)
+    !> Number of values.
+    integer, intent(in) :: n
+    !> Factor.
+    real(wp), intent(in) :: a
+    !> What is added.
+    real(wp), intent(in) :: x(n)
+    !> What is added to.
+    real(wp), intent(inout) :: y(n)
+
+    y = y + a*x
+  end subroutine add_scaled
+
+  !> How many values are not at most a limit in size; NaN is not.
+  pure function count_above(n, limit, values) result(number)
+    !> Number of values.
+    integer, intent(in) :: n
+    !> The limit.
+    real(wp), intent(in) :: limit
+    !> Values.
+    real(wp), intent(in) :: values(n)
+    !> Values above the limit.
+    integer :: number
+
+    number = n - count(abs(values) <= limit)
+  end function count_above
+
+  !> The first point that moved more than a cell or lost its volume.
+  pure subroutine find_bad(kin, h, n, dt, grid_velocity, volume, first_bad)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Spacing of the grid. [m]
+    real(wp), intent(in) :: h(3)
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity of the grid at the points. [m/s] (nvel, n)
+    real(wp), intent(in) :: grid_velocity(kin%nvel, n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> The point; 0 when there is none.
+    integer, intent(out) :: first_bad
+    logical :: good
+
+    do first_bad = 1, n
+      good = volume(first_bad) > 0.0_wp .and. volume(first_bad) <= huge(1.0_wp)
+      good = good .and. all(dt*abs(grid_velocity(:kin%dim, first_bad)) <= h(:kin%dim))
+      ! What does not move in the grid must be finite.
+      good = good .and. all(abs(grid_velocity(:, first_bad)) <= huge(1.0_wp))
+      if (.not. good) return
+    end do
+    first_bad = 0
+  end subroutine find_bad
 
   !> Express velocities in the local cylindrical basis of the moved points.
   pure subroutine turn_basis(n, dt, r_floor, x, velocity)

@@ -176,7 +176,8 @@ contains
                  'the parts against it, or use more points')
       return
     end if
-    allocate (table(full_width(lattice%kin), n), line_of_row(n), stat=status)
+    allocate (table(full_width(lattice%kin), n), stat=status)
+    if (status == 0) allocate (line_of_row(n), stat=status)
     if (status /= 0) then
       call raise(error, err_input, to_text(n)//' points are too many for the memory', &
                  file=text%document%path)

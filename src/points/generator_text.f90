@@ -3,7 +3,9 @@ module mpm_generator_text
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mpm_document, only: document_t, raise_at, value_t, value_to_integer, value_to_real
   use mpm_errors, only: err_input, error_t, raise
-  use mpm_kinds, only: wp
+  use mpm_kinds, only: lp, wp
+  use mpm_number_parser, only: number_ok, parse_real
+  use mpm_number_text, only: append_real, max_number_length
   use mpm_parser, only: parse_file
   use mpm_part_list, only: suggestion
   use mpm_strings, only: to_text
@@ -235,7 +237,7 @@ contains
     end select
   end function example
 
-  !> Write a points table.
+  !> Write a points table; its numbers are as short as gives back every bit.
   subroutine write_points_table(path, table, error)
     !> The file, which is replaced.
     character(*), intent(in) :: path
@@ -244,16 +246,42 @@ contains
     !> `err_io`; then there is no new file.
     type(error_t), allocatable, intent(out) :: error
     type(text_writer_t) :: writer
-    integer :: p
+    character((max_number_length + 1)*size(table, 1)) :: line
+    integer :: p, i, length
 
-    call writer%open(path, error, digits=17)
+    call writer%open(path, error)
     if (allocated(error)) return
     call writer%put_integer(size(table, 2))
     call writer%put_line()
     do p = 1, size(table, 2)
-      call writer%put_reals(table(:, p), size(table, 1))
+      length = 0
+      do i = 1, size(table, 1)
+        call append_exactly(line, length, table(i, p))
+        length = length + 1
+        line(length:length) = ' '
+      end do
+      call writer%put_line(line(:length - 1))
     end do
     call writer%commit(error)
   end subroutine write_points_table
+
+  !> Write a number with 15 digits if they give back the number, as decimals of a user do, or 17.
+  subroutine append_exactly(line, length, number)
+    !> The text.
+    character(*), intent(inout) :: line
+    !> Characters in use.
+    integer, intent(inout) :: length
+    !> The number.
+    real(wp), intent(in) :: number
+    real(wp) :: read_back
+    integer :: start, status
+
+    start = length
+    call append_real(line, length, number, 15)
+    call parse_real(line, start + 1_lp, int(length, lp), read_back, status)
+    if (status == number_ok .and. .not. abs(read_back - number) > 0.0_wp) return
+    length = start
+    call append_real(line, length, number, 17)
+  end subroutine append_exactly
 
 end module mpm_generator_text

@@ -5,6 +5,7 @@ module mpm_explicit_steps
   use mpm_errors, only: err_simulation, error_t, raise
   use mpm_g2p, only: g2p
   use mpm_kinds, only: lp, wp
+  use mpm_kinematics, only: type_axisymmetric
   use mpm_material, only: material_t
   use mpm_model, only: model_t
   use mpm_nodes, only: nodes_t
@@ -68,7 +69,8 @@ contains
       call scatter(points%kin, body%stencil, window, useful_threads(threads, n), n, &
                    points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
                    points%extent(:n), points%mass(:n), points%volume(:n), &
-                   points%velocity(:, :n), points%stress(:, :n), nodes%mass, nodes%momentum, nodes%force)
+                   points%velocity(:, :n), points%stress(:, :n), nodes%mass, &
+                   nodes%momentum, nodes%force)
       call finish_mapping(points%kin%nvel, window%size(), threads, points%body_force, nodes%mass, &
                           nodes%momentum, nodes%force, nodes%velocity, nodes%increment)
     end associate
@@ -320,7 +322,7 @@ contains
     !> The error.
     type(error_t), allocatable, intent(inout) :: error
     character(:), allocatable :: what, hint
-    real(wp) :: speed, limit
+    real(wp) :: limit
 
     if (cause == bad_stress) then
       what = 'has no admissible stress'
@@ -332,7 +334,7 @@ contains
     else
       what = 'moved more than a cell'
     end if
-    call body_stable_step(model%grid%spacing(), body, speed, limit)
+    limit = initial_stable_step(model%grid%spacing(), body)
     if (dt > limit) then
       hint = 'dt is above the stable step of this body, '//to_text(limit)//' s: use a smaller dt'
     else
@@ -343,6 +345,32 @@ contains
                to_text(body%points%id(slot))//' '//what//' in step '// &
                to_text(model%step + 1_lp)//', t = '//to_text(model%time)//' s', hint=hint)
   end subroutine raise_bad_point
+
+  !> Stable time step of a body in its initial state, which a run gone bad has not spoilt.
+  pure function initial_stable_step(spacing, body) result(limit)
+    !> Spacing of the grid. [m]
+    real(wp), intent(in) :: spacing(3)
+    !> The body.
+    class(body_t), intent(in) :: body
+    !> Largest stable step; huge when nothing bounds it. [s]
+    real(wp) :: limit
+    real(wp), allocatable :: volume(:), stress(:, :)
+    real(wp) :: speed
+    integer :: n
+
+    limit = huge(1.0_wp)
+    if (.not. allocated(body%material)) return
+    associate (points => body%points)
+      n = points%n_inside
+      volume = (2.0_wp*points%extent(:n))**points%kin%dim
+      if (points%kin%sim_type == type_axisymmetric) then
+        volume = volume*abs(points%x(1, :n) - points%displacement(1, :n))
+      end if
+      allocate (stress(points%kin%nstress, n), source=0.0_wp)
+      speed = body%material%wave_speed(n, points%mass(:n), volume, stress)
+      if (speed > 0.0_wp) limit = stable_length(spacing, body)/speed
+    end associate
+  end function initial_stable_step
 
   !> Largest stable time step of a body with FLIP and stress update last.
   !!
@@ -359,23 +387,36 @@ contains
     real(wp), intent(out) :: wave_speed
     !> Largest stable step; huge when nothing bounds it. [s]
     real(wp), intent(out) :: limit
-    real(wp) :: per_cell, courant
-    integer :: n, dim
+    integer :: n
 
     wave_speed = 0.0_wp
     limit = huge(1.0_wp)
     n = body%points%n_inside
-    dim = body%points%kin%dim
     if (n == 0 .or. .not. allocated(body%material)) return
     wave_speed = body%material%wave_speed(n, body%points%mass(:n), body%points%volume(:n), &
                                           body%points%stress(:, :n))
-    if (.not. wave_speed > 0.0_wp) return
-    ! The mean over the points of h divided by the size of the point: points per cell and direction.
-    per_cell = (product(spacing(:dim))*real(n, wp)/sum((2.0_wp*body%points%extent(:n))**dim)) &
-      **(1.0_wp/real(dim, wp))
-    per_cell = max(1.0_wp, per_cell)
-    courant = 1.0_wp/sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))
-    limit = courant/(wave_speed*sqrt(sum(1.0_wp/spacing(:dim)**2)))
+    if (wave_speed > 0.0_wp) limit = stable_length(spacing, body)/wave_speed
   end subroutine body_stable_step
+
+  !> Largest stable c dt of a body, from the spacing of the grid and the points in a cell.
+  pure function stable_length(spacing, body) result(length)
+    !> Spacing of the grid. [m]
+    real(wp), intent(in) :: spacing(3)
+    !> The body.
+    class(body_t), intent(in) :: body
+    !> Wave speed times stable step. [m]
+    real(wp) :: length
+    real(wp) :: per_cell
+    integer :: n, dim
+
+    n = body%points%n_inside
+    dim = body%points%kin%dim
+    ! Points per cell and direction: the spacing over the side of the mean point.
+    per_cell = (product(spacing(:dim))*real(n, wp)/sum((2.0_wp*body%points%extent(:n))**dim)) &
+               **(1.0_wp/real(dim, wp))
+    per_cell = max(1.0_wp, per_cell)
+    length = 1.0_wp/(sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))* &
+                     sqrt(sum(1.0_wp/spacing(:dim)**2)))
+  end function stable_length
 
 end module mpm_explicit_steps

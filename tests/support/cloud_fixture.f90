@@ -5,10 +5,11 @@ module mpm_cloud_fixture
   use mpm_random_fixture, only: random_t
   use mpm_sort, only: base_bounds, sort_by_cell
   use mpm_stencil, only: stencil_keys, stencil_t
+  use mpm_strings, only: to_text
   use mpm_window, only: window_t
   implicit none
   private
-  public :: cloud_t, grid_nodes, make_cloud, make_stencil, place_points
+  public :: cloud_t, grid_nodes, label, make_cloud, make_stencil, place_points
 
   !> Points as arrays, as `points_t` holds them.
   type :: cloud_t
@@ -52,6 +53,18 @@ contains
     stencil%lower(:kin%dim) = [0.0_wp, -0.3_wp, 1.1_wp]
     stencil%n_cells(:kin%dim) = n_cells(:kin%dim)
   end subroutine make_stencil
+
+  !> Which case a message is about.
+  pure function label(sim_type, width) result(text)
+    !> Simulation TYPE.
+    integer, intent(in) :: sim_type
+    !> Width of the stencil.
+    integer, intent(in) :: width
+    !> For example `TYPE 2, width 3`.
+    character(:), allocatable :: text
+
+    text = 'TYPE '//to_text(sim_type)//', width '//to_text(width)
+  end function label
 
   !> Number of nodes of the grid.
   pure function grid_nodes(stencil) result(n)
