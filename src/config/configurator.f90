@@ -27,8 +27,10 @@ module mpm_configurator
   character(10), parameter :: section_names(7) = &
     [character(10) :: 'job', 'serializer', 'driver', 'solver', 'grid', 'body', 'contact']
   !> Keys of the sections of single objects.
-  character(14), parameter :: object_keys(5) = &
-    [character(14) :: 'class', 'name', 'properties', 'int-properties', 'str-properties']
+  character(14), parameter :: object_keys(4) = &
+    [character(14) :: 'class', 'properties', 'int-properties', 'str-properties']
+  !> Keys of a contact.
+  character(14), parameter :: contact_keys(5) = [object_keys, 'name          ']
 
 contains
 
@@ -303,7 +305,7 @@ contains
     do i = 1, size(job%model%contacts)
       s = document%find_section('contact', s)
       associate (section => document%sections(s), slot => job%model%contacts(i))
-        call class_of(section, document%path, 'class', object_keys, class, error)
+        call class_of(section, document%path, 'class', contact_keys, class, error)
         if (allocated(error)) return
         call single_value(section, document%path, 'name', name, found, error)
         if (allocated(error)) return

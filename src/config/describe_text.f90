@@ -1,6 +1,7 @@
 !> Descriptions of classes as text for a terminal.
 module mpm_describe_text
   use mpm_description, only: description_t, kind_integer, kind_real, kind_string, property_t
+  use mpm_kinds, only: wp
   use mpm_strings, only: to_text
   implicit none
   private
@@ -83,6 +84,9 @@ contains
       text = text//', any number'
     else if (property%required) then
       text = text//', required'
+    else if (property%kind == kind_integer .and. &
+             real(property%default_integer, wp) < property%lower) then
+      text = text//', optional'
     else
       select case (property%kind)
       case (kind_real)
@@ -90,15 +94,19 @@ contains
       case (kind_integer)
         text = text//', default '//to_text(property%default_integer)
       case default
-        text = text//', default "'//property%default_string//'"'
+        if (len(property%default_string) > 0) then
+          text = text//', default "'//property%default_string//'"'
+        else
+          text = text//', optional'
+        end if
       end select
     end if
     if (property%kind /= kind_string) then
-      if (property%lower > -real(huge(1))) then
+      if (property%lower > -real(huge(1), wp)) then
         text = text//trim(merge(', above   ', ', at least', property%above))//' '// &
                to_text(property%lower)
       end if
-      if (property%upper < real(huge(1))) then
+      if (property%upper < real(huge(1), wp)) then
         text = text//trim(merge(', below  ', ', at most', property%below))//' '// &
                to_text(property%upper)
       end if

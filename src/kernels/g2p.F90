@@ -93,25 +93,6 @@ contains
     end select
   end subroutine g2p
 
-  !> Sum of products over the lanes of a vector.
-  pure function dot(n, a, b) result(total)
-    !> Number of lanes.
-    integer, intent(in) :: n
-    !> First factor. (n)
-    real(wp), intent(in) :: a(n)
-    !> Second factor. (n)
-    real(wp), intent(in) :: b(n)
-    !> The sum.
-    real(wp) :: total
-    integer :: l
-
-    total = 0.0_wp
-    !$omp simd reduction(+:total)
-    do l = 1, n
-      total = total + a(l)*b(l)
-    end do
-  end function dot
-
 #define DIM 1
 #define NVEL 1
 #define NGRAD 1

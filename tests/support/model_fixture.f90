@@ -14,7 +14,7 @@ module mpm_model_fixture
   use mpm_strings, only: to_text
   implicit none
   private
-  public :: lattice_table, make_body, make_grid, make_model
+  public :: lattice_table, make_body, make_grid, make_model, moving
 
 contains
 
@@ -145,5 +145,22 @@ contains
       end do
     end do
   end subroutine lattice_table
+
+  !> A table with another velocity of all points.
+  pure function moving(table, velocity) result(faster)
+    !> Rows m, V, x, v, active. (columns, n)
+    real(wp), intent(in) :: table(:, :)
+    !> Velocity; as many components as the table has are used. [m/s]
+    real(wp), intent(in) :: velocity(3)
+    !> The table with it. (columns, n)
+    real(wp) :: faster(size(table, 1), size(table, 2))
+    integer :: c, nvel
+
+    faster = table
+    nvel = (size(table, 1) - 3)/2
+    do c = 1, nvel
+      faster(2 + nvel + c, :) = velocity(c)
+    end do
+  end function moving
 
 end module mpm_model_fixture
