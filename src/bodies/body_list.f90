@@ -49,13 +49,16 @@ contains
       end if
       call properties%reject(name_key, 'there is no body "'//name//'"', error, near)
     else if (properties%given(id_key)) then
-      position = properties%integer(id_key) + 1
-      if (position <= size(bodies)) return
-      call properties%reject(id_key, 'there is no body number '//to_text(position - 1), error, &
+      position = properties%integer(id_key)
+      if (position < size(bodies)) then
+        position = position + 1
+        return
+      end if
+      call properties%reject(id_key, 'there is no body number '//to_text(position), error, &
                              'bodies are numbered from 0 in the order of the config: '//list)
     else
-      call properties%reject(name_key, 'a contact needs the names of its two bodies', error, &
-                             'str-properties = {"first", "second"}; bodies of this config: '//list)
+      call properties%reject(name_key, 'the body "'//name_key//'" is not named', error, &
+                             'name it in str-properties; bodies of this config: '//list)
     end if
   end subroutine find_body
 

@@ -59,9 +59,14 @@ contains
     class(monitor_t), intent(inout) :: monitor
     !> The simulation went bad, or output failed.
     type(error_t), allocatable, intent(out) :: error
+    integer :: i
 
     call self%serializer%open(self%model, error)
     if (allocated(error)) return
+    do i = 1, size(self%model%bodies)
+      call self%model%bodies(i)%body%points%write_table(error)
+      if (allocated(error)) return
+    end do
     call self%driver%run(self%model, self%solver, self%serializer, monitor, error)
   end subroutine job_run
 

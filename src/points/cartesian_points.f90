@@ -21,9 +21,15 @@ module mpm_cartesian_points
 
   !> Points at the centres of equal cells, where they lie in any part.
   type, extends(default_points_t) :: cartesian_points_t
+    private
+    !> File for the table of the points; not allocated when none is asked for.
+    character(:), allocatable :: out_file
+    !> The points as rows of a points file, until they are written. (columns, n)
+    real(wp), allocatable :: table(:, :)
   contains
     procedure, nopass :: describe => cartesian_points_describe
     procedure :: init => cartesian_points_init
+    procedure :: write_table => cartesian_points_write_table
   end type cartesian_points_t
 
   !> Where points can be, and what they are like.
@@ -82,7 +88,7 @@ contains
     type(value_t), intent(in) :: point_file
     !> The config, beside which a relative path is looked for.
     character(*), intent(in) :: config_file
-    !> A missing or bad text, no points, or a table that can't be written.
+    !> A missing or bad text, or no points.
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable :: path
     type(generator_text_t) :: text
@@ -99,8 +105,21 @@ contains
     if (allocated(error)) return
     call self%init_from_table(grid, table, path, line_of_row, error)
     if (allocated(error) .or. len(text%out_file) == 0) return
-    call write_points_table(text%out_file, table, error)
+    self%out_file = text%out_file
+    call move_alloc(table, self%table)
   end subroutine cartesian_points_init
+
+  !> Write the table that the generator text asks for, once.
+  subroutine cartesian_points_write_table(self, error)
+    !> The points.
+    class(cartesian_points_t), intent(inout) :: self
+    !> A table that can't be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    if (.not. allocated(self%table)) return
+    call write_points_table(self%out_file, self%table, error)
+    deallocate (self%table)
+  end subroutine cartesian_points_write_table
 
   !> Read the lattice and the parts.
   subroutine read_lattice(text, kin, lattice, error)

@@ -64,6 +64,8 @@ module mpm_points
     procedure(init_i), deferred :: init
     !> Send the fields of a frame.
     procedure(write_fields_i), deferred :: write_fields
+    !> Write what the config asks to keep of the points, when the run begins.
+    procedure :: write_table => points_write_table
     !> Give all arrays their length.
     procedure :: allocate => points_allocate
     !> Find the keys of all points for a basis.
@@ -107,6 +109,17 @@ module mpm_points
   end interface
 
 contains
+
+  !> Most points come from a file and leave none.
+  subroutine points_write_table(self, error)
+    !> The points.
+    class(points_t), intent(inout) :: self
+    !> A table that can't be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (unused => self)
+    end associate
+  end subroutine points_write_table
 
   !> Give all arrays their length; everything is 0 and in the order of the points file.
   subroutine points_allocate(self, kin, n)
