@@ -8,7 +8,6 @@ module mpm_body
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
-  use mpm_stencil, only: stencil_t
   implicit none
   private
   public :: body_slot_t, body_t
@@ -29,8 +28,6 @@ module mpm_body
     class(material_t), allocatable :: material
     !> Rule at the faces of the grid.
     class(boundary_t), allocatable :: boundary
-    !> The basis between points and nodes.
-    type(stencil_t) :: stencil
   contains
     !> Set the body's initial state, when its parts are set up.
     procedure(init_i), deferred :: init

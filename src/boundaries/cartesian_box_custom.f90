@@ -14,7 +14,6 @@ module mpm_cartesian_box_custom
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
-  use mpm_stencil, only: stencil_t
   use mpm_window, only: window_t
   implicit none
   private
@@ -27,8 +26,6 @@ module mpm_cartesian_box_custom
     type(box_faces_t) :: faces
     !> What each of them does. (faces%n)
     type(box_wall_t), allocatable :: walls(:)
-    !> The grid's functions at the points themselves.
-    type(stencil_t) :: stencil
   contains
     procedure, nopass :: describe => custom_describe
     procedure :: init => custom_init
@@ -99,8 +96,6 @@ contains
                               &and one tau_max for all faces, forgets hoop stress in code 2, &
                               &fixes tangential components in code 6, uses one area for all &
                               &nodes of codes 5 and 6, and ignores unknown codes.')
-    call description%add_note('Codes 5 and 6 find the filled part with the functions of the grid &
-                              &at the points, also when the solver averages them over corners.')
   end subroutine add_notes
 
   !> Read the walls.
@@ -122,7 +117,6 @@ contains
     if (allocated(error)) return
     call read_walls(self%faces, properties, self%walls, error)
     if (allocated(error)) return
-    call grid%make_stencil(.false., 0.0_wp, self%stencil, error)
   end subroutine custom_init
 
   !> Keep the body's own normal forces at walls with friction, find the filled area of loaded ones.
@@ -143,7 +137,7 @@ contains
       case (wall_friction)
         call keep_own_force(axis_of(face), nodes, self%walls(face))
       case (wall_traction, wall_bounded)
-        call fill_area(self%faces, self%stencil, face, grid, points, self%walls(face))
+        call fill_area(self%faces, face, grid, points, self%walls(face))
       case default
         cycle
       end select
@@ -173,11 +167,9 @@ contains
   end subroutine keep_own_force
 
   !> Area of a wall at its nodes, times the fraction that is filled with points.
-  subroutine fill_area(faces, stencil, face, grid, points, wall)
+  subroutine fill_area(faces, face, grid, points, wall)
     !> The faces.
     type(box_faces_t), intent(in) :: faces
-    !> The grid's functions at the points.
-    type(stencil_t), intent(in) :: stencil
     !> Face of the wall.
     integer, intent(in) :: face
     !> The grid.
@@ -190,7 +182,7 @@ contains
 
     call resize(wall%filled_area, wall%part%size())
     if (size(wall%filled_area) == 0) return
-    call nodal_volume(points%kin, stencil, wall%part, points%n_inside, &
+    call nodal_volume(points%kin, points%stencil, wall%part, points%n_inside, &
                       points%order(:points%n_inside), points%x, points%extent, points%volume, &
                       wall%filled_area)
     hi = wall%part%hi()

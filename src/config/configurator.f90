@@ -1,5 +1,6 @@
 !> From a config to a job: sections to objects, whatever their order in the file.
 module mpm_configurator
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mpm_bodies_reader, only: read_body
   use mpm_configurable, only: configurable_t
   use mpm_contact_registry, only: create_contact
@@ -129,7 +130,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(value_t) :: value
     integer :: sim_type
-    logical :: found
+    logical :: found, valid
 
     associate (section => document%sections(document%find_section('job')), model => job%model)
       call check_keys(section, document%path, &
@@ -144,7 +145,10 @@ contains
       end if
       call value_to_real(value, model%dt, error)
       if (allocated(error)) return
-      if (.not. (model%dt > 0.0_wp .and. model%dt <= huge(1.0_wp))) then
+      ! NaN is asked for first: a comparison with it would trap where traps are on.
+      valid = ieee_is_finite(model%dt)
+      if (valid) valid = model%dt > 0.0_wp
+      if (.not. valid) then
         call raise(error, err_input, 'dt = '//value%text//' is not a time step', value%file, &
                    value%line, 'dt must be a finite number above 0')
         return
@@ -154,7 +158,7 @@ contains
       if (found) then
         call value_to_real(value, model%t_start, error)
         if (allocated(error)) return
-        if (.not. abs(model%t_start) <= huge(1.0_wp)) then
+        if (.not. ieee_is_finite(model%t_start)) then
           call raise(error, err_input, 't = '//value%text//' is not a time', value%file, &
                      value%line, 't is the start time and must be a finite number')
           return
@@ -404,3 +408,4 @@ contains
   end subroutine append_entry
 
 end module mpm_configurator
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite

@@ -254,7 +254,7 @@ contains
 
     n = body%points%n_inside
     associate (points => body%points)
-      call mass_gradient(points%kin, body%stencil, window, n, points%order(:n), points%row_offset, &
+      call mass_gradient(points%kin, points%stencil, window, n, points%order(:n), points%row_offset, &
                          points%lo(points%kin%dim), points%key(:n), points%x(:, :n), &
                          points%extent(:n), points%mass(:n), normal)
     end associate

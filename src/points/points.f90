@@ -47,6 +47,8 @@ module mpm_points
     real(wp), allocatable :: gradient(:, :)
     !> Acceleration by the body force, the same for all points. [m/s2]
     real(wp) :: body_force(3) = 0.0_wp
+    !> The basis between points and nodes.
+    type(stencil_t) :: stencil
     !> Key of the stencil, or `outside`. (n)
     integer, allocatable :: key(:)
     !> Slots of the points inside in the order of their cells. (n_inside)
@@ -68,7 +70,7 @@ module mpm_points
     procedure :: write_table => points_write_table
     !> Give all arrays their length.
     procedure :: allocate => points_allocate
-    !> Find the keys of all points for a basis.
+    !> Take a basis, find the keys of all points and sort them by cell.
     procedure :: locate => points_locate
     !> Bring the order of cells up to date; switch off points that left the grid.
     procedure :: refresh_order => points_refresh_order
@@ -148,30 +150,29 @@ contains
     self%stress = 0.0_wp
   end subroutine points_allocate
 
-  !> Find the keys of all points for a basis and sort the arrays by cell.
+  !> Take a basis, find the keys of all points and sort the arrays by cell.
   subroutine points_locate(self, stencil)
     !> The points.
     class(points_t), intent(inout) :: self
     !> Basis.
     type(stencil_t), intent(in) :: stencil
 
+    self%stencil = stencil
     call stencil_keys(stencil, self%n_inside, self%x(:, :self%n_inside), &
                       self%extent(:self%n_inside), self%key(:self%n_inside))
     call base_bounds(stencil, self%n_inside, self%key(:self%n_inside), self%lo, self%hi)
     self%n_changed = 1
     self%n_drifted = self%n
-    call self%refresh_order(stencil)
+    call self%refresh_order()
   end subroutine points_locate
 
   !> Bring the order of cells up to date; switch off points that left the grid.
   !!
   !! Only the list `order` is made anew when points changed their cell; the arrays themselves are
   !! sorted when an eighth of the points have, or when a point must go to the end.
-  subroutine points_refresh_order(self, stencil)
+  subroutine points_refresh_order(self)
     !> The points.
     class(points_t), intent(inout) :: self
-    !> Basis.
-    type(stencil_t), intent(in) :: stencil
     integer :: n_left, p, k, inside_now
     integer, allocatable :: order(:)
 
@@ -197,7 +198,7 @@ contains
       self%n_lost = self%n_lost + n_left
     end if
     if (self%n_inside == 0) return
-    call sort_by_cell(stencil, self%n_inside, self%key(:self%n_inside), self%lo, self%hi, &
+    call sort_by_cell(self%stencil, self%n_inside, self%key(:self%n_inside), self%lo, self%hi, &
                       self%order(:self%n_inside), self%row_offset)
     if (8*self%n_drifted < self%n_inside) return
     self%n_drifted = 0

@@ -35,14 +35,15 @@ contains
     logical, intent(in) :: averaged
     !> Points that the basis can't take.
     type(error_t), allocatable, intent(out) :: error
+    type(stencil_t) :: stencil
 
     associate (item => model%bodies(body)%body)
-      call model%grid%make_stencil(averaged, maxval(item%points%extent), item%stencil, error)
+      call model%grid%make_stencil(averaged, maxval(item%points%extent), stencil, error)
       if (allocated(error)) then
         error%message = 'body "'//item%name//'": '//error%message
         return
       end if
-      call item%points%locate(item%stencil)
+      call item%points%locate(stencil)
     end associate
   end subroutine locate_points
 
@@ -55,18 +56,18 @@ contains
     type(window_t) :: window
     integer :: n, dim
 
-    call body%points%refresh_order(body%stencil)
+    call body%points%refresh_order()
     n = body%points%n_inside
-    dim = body%stencil%dim
+    dim = body%points%stencil%dim
     if (n > 0) then
       window%lo = body%points%lo
       window%n = 1
-      window%n(:dim) = body%points%hi(:dim) - body%points%lo(:dim) + body%stencil%width
+      window%n(:dim) = body%points%hi(:dim) - body%points%lo(:dim) + body%points%stencil%width
     end if
     call body%nodes%place(window)
     if (n == 0) return
     associate (points => body%points, nodes => body%nodes)
-      call scatter(points%kin, body%stencil, window, useful_threads(threads, n), n, &
+      call scatter(points%kin, body%points%stencil, window, useful_threads(threads, n), n, &
                    points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
                    points%extent(:n), points%mass(:n), points%volume(:n), &
                    points%velocity(:, :n), points%stress(:, :n), nodes%mass, &
@@ -183,10 +184,10 @@ contains
       blocks = (item%points%n_inside + block_size - 1)/block_size
       allocate (slot(blocks), cause(blocks))
       if (allocated(item%material)) then
-        call sweep_blocks(item%points, item%nodes, item%stencil, model%threads, dt, &
+        call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
                           keep_gradient, slot, cause, item%material)
       else
-        call sweep_blocks(item%points, item%nodes, item%stencil, model%threads, dt, &
+        call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
                           keep_gradient, slot, cause)
       end if
       first_bad = 0

@@ -154,7 +154,7 @@ CASES = [
          'there is no body "secund"', "    str-properties#2"),
     Case("contact-with-itself", '{"first", "second"}', '{"first", "first"}', 'both are "first"',
          "    str-properties#2"),
-    Case("contact-of-one", '{"first", "second"}', '{"first"}', "needs the names of its two bodies",
+    Case("contact-of-one", '{"first", "second"}', '{"first"}', "the body \"body_2\" is not named",
          '    class = "ContactH'),
     Case("contact-number", 'str-properties = {"first", "second"}', "int-properties = {0, 2}",
          "there is no body number 2", "    int-properties = {0, 2"),
