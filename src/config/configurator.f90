@@ -408,4 +408,3 @@ contains
   end subroutine append_entry
 
 end module mpm_configurator
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
