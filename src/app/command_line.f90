@@ -2,7 +2,7 @@
 module mpm_command_line
   use mpm_errors, only: err_usage, error_t, raise
   use mpm_monitor, only: normal, quiet, verbose
-  use mpm_strings, only: append_text, nearest_name, string_t
+  use mpm_strings, only: append_text, excerpt, nearest_name, string_t
   implicit none
   private
   public :: command_line_t, read_command_line, usage
@@ -187,7 +187,7 @@ contains
     status = 1
     if (verify(text, '0123456789') == 0 .and. len(text) < 6) read (text, *, iostat=status) threads
     if (status == 0 .and. threads >= 1 .and. threads <= 4096) return
-    call raise(error, err_usage, '--threads '//text//' is not a number from 1 to 4096')
+    call raise(error, err_usage, '--threads '//excerpt(text)//' is not a number from 1 to 4096')
   end subroutine read_threads
 
   !> An argument that means nothing.
@@ -204,8 +204,8 @@ contains
     integer :: i
 
     if (index(argument, '-') /= 1) then
-      call raise(error, err_usage, 'unexpected argument "'//argument//'"', &
-                 hint='a config is given with -c: mpm3d -c '//argument)
+      call raise(error, err_usage, 'unexpected argument "'//excerpt(argument)//'"', &
+                 hint='a config is given with -c: mpm3d -c '//excerpt(argument))
       return
     end if
     do i = 1, size(options)
@@ -213,7 +213,7 @@ contains
     end do
     hint = nearest_name(argument, known)
     if (len(hint) > 0) hint = 'did you mean '//hint//'?   '
-    call raise(error, err_usage, 'unknown option "'//argument//'"', hint=hint//'(mpm3d --help)')
+    call raise(error, err_usage, 'unknown option "'//excerpt(argument)//'"', hint=hint//'(mpm3d --help)')
   end subroutine raise_unknown
 
 end module mpm_command_line

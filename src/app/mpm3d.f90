@@ -12,7 +12,7 @@ program mpm3d
   use mpm_job_report, only: report_job
   use mpm_monitor, only: monitor_t, quiet
   use mpm_registry, only: describe_classes, role_names
-  use mpm_strings, only: append_text, nearest_name, string_t
+  use mpm_strings, only: append_text, excerpt, nearest_name, string_t
   use omp_lib, only: omp_get_max_threads
   implicit none
 
@@ -138,7 +138,7 @@ contains
     end do
     hint = nearest_name(name, known)
     if (len(hint) > 0) hint = 'did you mean "'//hint//'"?   '
-    call raise(error, err_usage, 'there is no class "'//name//'"', hint=hint//'(mpm3d --list)')
+    call raise(error, err_usage, 'there is no class "'//excerpt(name)//'"', hint=hint//'(mpm3d --list)')
   end subroutine describe_class
 
 end program mpm3d

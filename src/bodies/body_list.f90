@@ -3,7 +3,7 @@ module mpm_body_list
   use mpm_body, only: body_slot_t
   use mpm_errors, only: error_t
   use mpm_properties, only: properties_t
-  use mpm_strings, only: nearest_name, string_t, to_text
+  use mpm_strings, only: excerpt, nearest_name, string_t, to_text
   implicit none
   private
   public :: find_body
@@ -47,7 +47,7 @@ contains
       else
         near = 'bodies of this config: '//list
       end if
-      call properties%reject(name_key, 'there is no body "'//name//'"', error, near)
+      call properties%reject(name_key, 'there is no body "'//excerpt(name)//'"', error, near)
     else if (properties%given(id_key)) then
       position = properties%integer(id_key)
       if (position < size(bodies)) then

@@ -19,7 +19,7 @@ module mpm_configurator
   use mpm_section_reader, only: check_keys, single_value
   use mpm_serializer_registry, only: create_serializer
   use mpm_solver_registry, only: create_solver
-  use mpm_strings, only: nearest_name, string_t, to_text
+  use mpm_strings, only: excerpt, nearest_name, string_t, to_text
   implicit none
   private
   public :: configure
@@ -82,7 +82,7 @@ contains
     integer :: i, first
 
     if (size(document%entries) > 0) then
-      call raise(error, err_input, 'key "'//document%entries(1)%key//'" outside of a section', &
+      call raise(error, err_input, 'key "'//excerpt(document%entries(1)%key)//'" outside of a section', &
                  document%path, document%entries(1)%line, 'keys belong between the braces of a &
                  &section such as job { }')
       return
@@ -99,7 +99,7 @@ contains
           else
             near = 'sections: job, serializer, driver, solver, grid, body, contact'
           end if
-          call raise(error, err_input, 'unknown section "'//section%name//'"', document%path, &
+          call raise(error, err_input, 'unknown section "'//excerpt(section%name)//'"', document%path, &
                      section%line, near)
           return
         end if
@@ -149,7 +149,7 @@ contains
       valid = ieee_is_finite(model%dt)
       if (valid) valid = model%dt > 0.0_wp
       if (.not. valid) then
-        call raise(error, err_input, 'dt = '//value%text//' is not a time step', value%file, &
+        call raise(error, err_input, 'dt = '//excerpt(value%text)//' is not a time step', value%file, &
                    value%line, 'dt must be a finite number above 0')
         return
       end if
@@ -159,7 +159,7 @@ contains
         call value_to_real(value, model%t_start, error)
         if (allocated(error)) return
         if (.not. ieee_is_finite(model%t_start)) then
-          call raise(error, err_input, 't = '//value%text//' is not a time', value%file, &
+          call raise(error, err_input, 't = '//excerpt(value%text)//' is not a time', value%file, &
                      value%line, 't is the start time and must be a finite number')
           return
         end if
@@ -282,7 +282,7 @@ contains
       do j = 1, i - 1
         if (job%model%bodies(j)%body%name == job%model%bodies(i)%body%name) then
           call raise(error, err_input, 'a second body named "'// &
-                     job%model%bodies(i)%body%name//'"', document%path, &
+                     excerpt(job%model%bodies(i)%body%name)//'"', document%path, &
                      document%sections(s)%line, 'names of bodies are unique: choose another')
           return
         end if
@@ -342,7 +342,7 @@ contains
     if (allocated(error)) return
     call select_section(document, selector, s)
     if (s == 0) then
-      call raise(error, err_usage, '--set '//text//': the config has no section "'//selector//'"', &
+      call raise(error, err_usage, '--set '//excerpt(text, 80)//': the config has no section "'//excerpt(selector)//'"', &
                  hint='write section.key=value; a body or contact is body.NAME or body.NUMBER')
       return
     end if
@@ -353,6 +353,8 @@ contains
         e = size(section%entries)
       end if
       call move_alloc(values, section%entries(e)%values)
+      section%entries(e)%file = '--set '//excerpt(text, 80)
+      section%entries(e)%line = 0
     end associate
   end subroutine apply_override
 

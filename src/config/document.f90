@@ -4,8 +4,7 @@ module mpm_document
   use mpm_kinds, only: lp, wp
   use mpm_number_parser, only: number_ok, number_too_large, parse_integer, parse_real, &
                                parse_special
-  use mpm_strings, only: string_t
-  use mpm_text_file, only: excerpt
+  use mpm_strings, only: excerpt, string_t
   implicit none
   private
   public :: document_t, entry_t, section_t, value_t
@@ -33,7 +32,9 @@ module mpm_document
     character(:), allocatable :: key
     !> The values in the order of the file; none for an empty list.
     type(value_t), allocatable :: values(:)
-    !> Line of the key, from 1.
+    !> The command line option that gives the entry; not allocated for one of the config.
+    character(:), allocatable :: file
+    !> Line of the key, from 1; 0 when it comes from the command line.
     integer :: line = 0
     !> Whether the values stand in braces.
     logical :: braced = .false.

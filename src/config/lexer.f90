@@ -4,8 +4,8 @@
 !! ends on its line. `#` starts a comment that runs to the end of its line.
 module mpm_lexer
   use mpm_errors, only: err_input, error_t, raise
-  use mpm_strings, only: to_text
-  use mpm_text_file, only: excerpt, has_byte_order_mark
+  use mpm_strings, only: excerpt, to_text
+  use mpm_text_file, only: has_byte_order_mark
   implicit none
   private
   public :: token_t, tokenize

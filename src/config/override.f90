@@ -4,7 +4,7 @@ module mpm_override
   use mpm_errors, only: err_usage, error_t, raise
   use mpm_parser, only: parse_text
   use mpm_source, only: is_name
-  use mpm_text_file, only: excerpt
+  use mpm_strings, only: excerpt
   implicit none
   private
   public :: parse_override

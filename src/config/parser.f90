@@ -14,8 +14,8 @@ module mpm_parser
   use mpm_lexer, only: token_close, token_comma, token_end, token_equals, token_open, &
                        token_string, token_word
   use mpm_source, only: source_t
-  use mpm_strings, only: string_t, to_text
-  use mpm_text_file, only: excerpt, read_whole_file
+  use mpm_strings, only: excerpt, string_t, to_text
+  use mpm_text_file, only: read_whole_file
   implicit none
   private
   public :: parse_file, parse_text

@@ -6,7 +6,7 @@ module mpm_properties
   use mpm_errors, only: err_input, error_t, raise
   use mpm_kinds, only: wp
   use mpm_parser, only: parse_text
-  use mpm_strings, only: nearest_name, string_t, to_text
+  use mpm_strings, only: excerpt, nearest_name, string_t, to_text
   implicit none
   private
   public :: make_properties, properties_t, resolve_properties, values_of_key
@@ -232,7 +232,7 @@ contains
     else
       near = 'the class takes no entries in this list'
     end if
-    call raise(error, err_input, description%name//' has no property "'//value%name//'" here', &
+    call raise(error, err_input, description%name//' has no property "'//excerpt(value%name)//'" here', &
                value%file, value%line, near//'   (mpm3d --describe '//description%name//')')
   end subroutine find_named
 
@@ -301,7 +301,7 @@ contains
       if (allocated(error)) return
       if (.not. property%any_real .and. .not. ieee_is_finite(real_value)) then
         call raise(error, err_input, property%name//' must be a finite number, found '// &
-                   value%text, value%file, value%line, property%meaning)
+                   excerpt(value%text), value%file, value%line, property%meaning)
         return
       end if
       if (ieee_is_finite(real_value)) call check_bounds(property, real_value, value, error)
@@ -335,7 +335,7 @@ contains
     low = number < property%lower .or. (property%above .and. number <= property%lower)
     high = number > property%upper .or. (property%below .and. number >= property%upper)
     if (.not. (low .or. high)) return
-    call raise(error, err_input, property%name//' = '//value%text//' is out of bounds: '// &
+    call raise(error, err_input, property%name//' = '//excerpt(value%text)//' is out of bounds: '// &
                bounds_text(property), value%file, value%line, property%meaning)
   end subroutine check_bounds
 

@@ -2,7 +2,7 @@
 module mpm_section_reader
   use mpm_document, only: entry_t, section_t, value_t
   use mpm_errors, only: err_input, error_t, raise
-  use mpm_strings, only: nearest_name, string_t
+  use mpm_strings, only: excerpt, nearest_name, string_t
   implicit none
   private
   public :: check_keys, single_value
@@ -38,8 +38,9 @@ contains
         else
           near = 'keys of this section: '//list
         end if
-        call raise(error, err_input, 'unknown key "'//entry%key//'" in section "'// &
+        call raise(error, err_input, 'unknown key "'//excerpt(entry%key)//'" in section "'// &
                    section%name//'"', file, entry%line, near)
+        if (allocated(entry%file)) error%file = entry%file
         return
       end associate
     end do
@@ -72,7 +73,9 @@ contains
       value = section%entries(i)%values(1)
       if (len(value%text) > 0) return
     end if
-    call raise(error, err_input, '"'//key//'" takes one value', file, section%entries(i)%line, &
+    value%line = section%entries(i)%line
+    if (allocated(section%entries(i)%file)) value%file = section%entries(i)%file
+    call raise(error, err_input, '"'//key//'" takes one value', value%file, value%line, &
                'for example: '//key//' = value')
   end subroutine single_value
 

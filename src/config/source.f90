@@ -3,7 +3,7 @@ module mpm_source
   use mpm_errors, only: err_input, error_t, raise
   use mpm_lexer, only: token_close, token_end, token_equals, token_open, token_t, &
                        token_word, tokenize
-  use mpm_text_file, only: excerpt
+  use mpm_strings, only: excerpt
   implicit none
   private
   public :: is_name, source_t

@@ -254,9 +254,9 @@ contains
 
     n = body%points%n_inside
     associate (points => body%points)
-      call mass_gradient(points%kin, points%stencil, window, n, points%order(:n), points%row_offset, &
-                         points%lo(points%kin%dim), points%key(:n), points%x(:, :n), &
-                         points%extent(:n), points%mass(:n), normal)
+      call mass_gradient(points%kin, points%stencil, window, n, points%order(:n), &
+                         points%row_offset, points%lo(points%kin%dim), points%key(:n), &
+                         points%x(:, :n), points%extent(:n), points%mass(:n), normal)
     end associate
     hi = window%hi()
     do k = window%lo(3), hi(3)

@@ -3,7 +3,7 @@ module mpm_strings
   use mpm_kinds, only: lp, wp
   implicit none
   private
-  public :: append_text, nearest_name, string_t, to_text
+  public :: append_text, excerpt, nearest_name, string_t, to_text
 
   !> A text of any length, for lists of texts.
   type :: string_t
@@ -115,6 +115,43 @@ contains
     if (text(last:last) == '.') last = last - 1
     text = sign//text(:last)
   end function plain_text
+
+  !> The start of a text for a message: at most `limit` bytes, without control characters.
+  pure function excerpt(text, limit) result(short)
+    !> Any text.
+    character(*), intent(in) :: text
+    !> Most bytes to keep, at least 4; default 40.
+    integer, intent(in), optional :: limit
+    !> The text, or its start and `...`.
+    character(:), allocatable :: short
+    integer :: i, last
+
+    last = 40
+    if (present(limit)) last = limit
+    if (len(text) <= last) then
+      short = text
+    else
+      last = last - 3
+      ! a character of several bytes is kept whole or left out
+      do while (last > 1 .and. is_continuation(text(last + 1:last + 1)))
+        last = last - 1
+      end do
+      short = text(:last)//'...'
+    end if
+    do i = 1, len(short)
+      if (iachar(short(i:i)) < 32 .or. iachar(short(i:i)) == 127) short(i:i) = '?'
+    end do
+  end function excerpt
+
+  !> Whether a byte is the second or a later one of a UTF-8 character.
+  pure function is_continuation(byte)
+    !> The byte.
+    character(1), intent(in) :: byte
+    !> True for 128 to 191.
+    logical :: is_continuation
+
+    is_continuation = iand(ichar(byte), 192) == 128
+  end function is_continuation
 
   !> The known name nearest to `name` by edit distance, or '' when none is near.
   pure function nearest_name(name, known) result(nearest)

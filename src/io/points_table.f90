@@ -3,8 +3,8 @@ module mpm_points_table
   use mpm_errors, only: err_input, error_t, raise
   use mpm_kinds, only: ip, lp, wp
   use mpm_number_parser, only: number_ok, number_too_large, parse_integer, parse_real, parse_special
-  use mpm_strings, only: to_text
-  use mpm_text_file, only: excerpt, has_byte_order_mark, read_whole_file
+  use mpm_strings, only: excerpt, to_text
+  use mpm_text_file, only: has_byte_order_mark, read_whole_file
   implicit none
   private
   public :: read_points_table

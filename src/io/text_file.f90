@@ -3,9 +3,10 @@ module mpm_text_file
   use mpm_errors, only: err_input, error_t, raise
   use mpm_files, only: directory_of, file_exists, is_directory, is_readable, join_path
   use mpm_kinds, only: lp
+  use mpm_strings, only: excerpt
   implicit none
   private
-  public :: excerpt, find_input_file, has_byte_order_mark, read_whole_file
+  public :: find_input_file, has_byte_order_mark, read_whole_file
 
   !> Most bytes read from something without a known size, such as a pipe. [byte]
   integer, parameter :: max_pipe_size = 64*1024*1024
@@ -165,43 +166,6 @@ contains
     is_plain = .not. is_directory(path)
     if (is_plain) is_plain = file_exists(path)
   end function is_plain
-
-  !> The start of a text for a message: at most `limit` bytes, without control characters.
-  pure function excerpt(text, limit) result(short)
-    !> Any text.
-    character(*), intent(in) :: text
-    !> Most bytes to keep, at least 4; default 40.
-    integer, intent(in), optional :: limit
-    !> The text, or its start and `...`.
-    character(:), allocatable :: short
-    integer :: i, last
-
-    last = 40
-    if (present(limit)) last = limit
-    if (len(text) <= last) then
-      short = text
-    else
-      last = last - 3
-      ! a character of several bytes is kept whole or left out
-      do while (last > 1 .and. is_continuation(text(last + 1:last + 1)))
-        last = last - 1
-      end do
-      short = text(:last)//'...'
-    end if
-    do i = 1, len(short)
-      if (iachar(short(i:i)) < 32 .or. iachar(short(i:i)) == 127) short(i:i) = '?'
-    end do
-  end function excerpt
-
-  !> Whether a byte is the second or a later one of a UTF-8 character.
-  pure function is_continuation(byte)
-    !> The byte.
-    character(1), intent(in) :: byte
-    !> True for 128 to 191.
-    logical :: is_continuation
-
-    is_continuation = iand(ichar(byte), 192) == 128
-  end function is_continuation
 
   !> Whether a text starts with the mark that some editors put in front of UTF-8.
   pure function has_byte_order_mark(text)

@@ -49,6 +49,8 @@ contains
     call self%driver%prepare(self%model, error)
     if (allocated(error)) return
     call self%solver%start(self%model, error)
+    if (.not. allocated(error)) return
+    if (len(error%file) == 0) error%file = self%config
   end subroutine job_start
 
   !> Run to the stop time.

@@ -185,19 +185,21 @@ contains
     !> exp(y). (n)
     real(wp), intent(out) :: value(n)
     real(wp), parameter :: small = 0.0625_wp
-    real(wp) :: c
+    real(wp) :: c, z
     integer :: p
 
     do p = 1, n
-      c = 1.0_wp + y(p)*(1.0_wp/9.0_wp)
-      c = 1.0_wp + c*(y(p)*0.125_wp)
-      c = 1.0_wp + c*(y(p)*(1.0_wp/7.0_wp))
-      c = 1.0_wp + c*(y(p)*(1.0_wp/6.0_wp))
-      c = 1.0_wp + c*(y(p)*0.2_wp)
-      c = 1.0_wp + c*(y(p)*0.25_wp)
-      c = 1.0_wp + c*(y(p)*(1.0_wp/3.0_wp))
-      c = 1.0_wp + c*(y(p)*0.5_wp)
-      value(p) = 1.0_wp + c*y(p)
+      ! Larger arguments are done below; the polynomial must not overflow for them.
+      z = max(-small, min(small, y(p)))
+      c = 1.0_wp + z*(1.0_wp/9.0_wp)
+      c = 1.0_wp + c*(z*0.125_wp)
+      c = 1.0_wp + c*(z*(1.0_wp/7.0_wp))
+      c = 1.0_wp + c*(z*(1.0_wp/6.0_wp))
+      c = 1.0_wp + c*(z*0.2_wp)
+      c = 1.0_wp + c*(z*0.25_wp)
+      c = 1.0_wp + c*(z*(1.0_wp/3.0_wp))
+      c = 1.0_wp + c*(z*0.5_wp)
+      value(p) = 1.0_wp + c*z
     end do
     do p = 1, n
       if (abs(y(p)) > small) value(p) = bounded_exponential(y(p))

@@ -3,8 +3,9 @@ module mpm_nodes
   use mpm_configurable, only: configurable_t
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
-  use mpm_kinds, only: wp
+  use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
+  use mpm_memory, only: available_memory
   use mpm_properties, only: properties_t
   use mpm_window, only: window_t
   implicit none
@@ -70,24 +71,47 @@ module mpm_nodes
 contains
 
   !> Move the window; grow the arrays if they are too short.
-  subroutine nodes_place(self, window)
+  subroutine nodes_place(self, window, bytes_missing)
     !> The nodes.
     class(nodes_t), intent(inout) :: self
     !> The new window.
     type(window_t), intent(in) :: window
-    integer :: capacity
+    !> 0, or the bytes that the window needs and the machine does not have; the arrays stay then.
+    integer(lp), intent(out), optional :: bytes_missing
+    integer(lp) :: bytes
+    integer :: capacity, status
 
-    self%window = window
+    if (present(bytes_missing)) bytes_missing = 0
     capacity = 0
     if (allocated(self%mass)) capacity = size(self%mass)
-    if (window%size() <= capacity .and. allocated(self%mass)) return
+    if (window%size() <= capacity .and. allocated(self%mass)) then
+      self%window = window
+      return
+    end if
+    bytes = window%size()*int(4*self%kin%nvel + 1, lp)*(storage_size(1.0_wp)/8)
+    bytes = bytes + bytes/8
+    if (present(bytes_missing)) then
+      if (bytes > available_memory()) then
+        bytes_missing = bytes
+        return
+      end if
+    end if
     if (allocated(self%mass)) then
       deallocate (self%mass, self%momentum, self%force, self%velocity, self%increment)
     end if
-    capacity = window%size() + window%size()/8
-    allocate (self%mass(capacity), self%momentum(self%kin%nvel, capacity))
-    allocate (self%force(self%kin%nvel, capacity), self%velocity(self%kin%nvel, capacity))
-    allocate (self%increment(self%kin%nvel, capacity))
+    self%window = window
+    capacity = window%size() + min(window%size()/8, huge(1) - window%size())
+    associate (nvel => self%kin%nvel)
+      allocate (self%mass(capacity), stat=status)
+      if (status == 0) allocate (self%momentum(nvel, capacity), stat=status)
+      if (status == 0) allocate (self%force(nvel, capacity), stat=status)
+      if (status == 0) allocate (self%velocity(nvel, capacity), stat=status)
+      if (status == 0) allocate (self%increment(nvel, capacity), stat=status)
+    end associate
+    if (status /= 0) then
+      if (present(bytes_missing)) bytes_missing = bytes
+      return
+    end if
     self%mass = 0.0_wp
     self%momentum = 0.0_wp
     self%force = 0.0_wp

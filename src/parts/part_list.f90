@@ -8,8 +8,7 @@ module mpm_part_list
   use mpm_part, only: part_slot_t
   use mpm_part_registry, only: create_part
   use mpm_properties, only: properties_t, resolve_properties, values_of_key
-  use mpm_strings, only: nearest_name, string_t
-  use mpm_text_file, only: excerpt
+  use mpm_strings, only: excerpt, nearest_name, string_t
   implicit none
   private
   public :: part_list_t, suggestion

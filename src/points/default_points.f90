@@ -152,6 +152,7 @@ contains
       if (allocated(error)) return
     end do
     call self%allocate(grid%kin, size(table, 2))
+    self%file = path
     n_components = (size(table, 1) - 3)/2
     do p = 1, self%n
       self%mass(p) = table(1, p)
@@ -168,6 +169,7 @@ contains
         self%volume(p) = self%volume(p)*self%x(1, p)
       end if
     end do
+    self%widest_line = line_of_row(maxloc(self%extent, dim=1))
     call move_inactive_back(self, is_active=table(size(table, 1), :) > 0.5_wp)
   end subroutine default_points_init_from_table
 

@@ -8,8 +8,7 @@ module mpm_generator_text
   use mpm_number_text, only: append_real, max_number_length
   use mpm_parser, only: parse_file
   use mpm_part_list, only: suggestion
-  use mpm_strings, only: to_text
-  use mpm_text_file, only: excerpt
+  use mpm_strings, only: excerpt, to_text
   use mpm_text_writer, only: text_writer_t
   implicit none
   private

@@ -27,6 +27,10 @@ module mpm_points
     integer :: n_inside = 0
     !> Number of points that were active at the start and have left the grid.
     integer :: n_lost = 0
+    !> The file of the points, for messages; empty when there is none.
+    character(:), allocatable :: file
+    !> Line in `file` of the point with the largest box.
+    integer :: widest_line = 0
     !> Position in the points file, from 1. (n)
     integer, allocatable :: id(:)
     !> Mass. [kg] (n)
@@ -70,7 +74,7 @@ module mpm_points
     procedure :: write_table => points_write_table
     !> Give all arrays their length.
     procedure :: allocate => points_allocate
-    !> Take a basis, find the keys of all points and sort them by cell.
+    !> Take a basis and find the keys of all points.
     procedure :: locate => points_locate
     !> Bring the order of cells up to date; switch off points that left the grid.
     procedure :: refresh_order => points_refresh_order
@@ -139,6 +143,7 @@ contains
     allocate (self%id(n), self%mass(n), self%volume(n), self%extent(n), self%key(n))
     allocate (self%x(kin%dim, n), self%displacement(kin%nvel, n), self%velocity(kin%nvel, n))
     allocate (self%stress(kin%nstress, n), self%order(n))
+    self%file = ''
     self%id = [(i, i=1, n)]
     self%mass = 0.0_wp
     self%volume = 0.0_wp
@@ -150,7 +155,7 @@ contains
     self%stress = 0.0_wp
   end subroutine points_allocate
 
-  !> Take a basis, find the keys of all points and sort the arrays by cell.
+  !> Take a basis and find the keys of all points; `refresh_order` sorts them.
   subroutine points_locate(self, stencil)
     !> The points.
     class(points_t), intent(inout) :: self
@@ -163,7 +168,6 @@ contains
     call base_bounds(stencil, self%n_inside, self%key(:self%n_inside), self%lo, self%hi)
     self%n_changed = 1
     self%n_drifted = self%n
-    call self%refresh_order()
   end subroutine points_locate
 
   !> Bring the order of cells up to date; switch off points that left the grid.

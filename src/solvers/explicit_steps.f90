@@ -41,6 +41,8 @@ contains
       call model%grid%make_stencil(averaged, maxval(item%points%extent), stencil, error)
       if (allocated(error)) then
         error%message = 'body "'//item%name//'": '//error%message
+        error%file = item%points%file
+        error%line = item%points%widest_line
         return
       end if
       call item%points%locate(stencil)
@@ -48,23 +50,34 @@ contains
   end subroutine locate_points
 
   !> Map a body to its nodes: mass, momentum, velocity, internal force and body force.
-  subroutine map_to_nodes(body, threads)
+  subroutine map_to_nodes(body, threads, error)
     !> The body.
     class(body_t), intent(inout) :: body
     !> Number of threads.
     integer, intent(in) :: threads
+    !> The nodes need more memory than there is.
+    type(error_t), allocatable, intent(out) :: error
     type(window_t) :: window
+    integer(lp) :: bytes_missing
     integer :: n, dim
 
-    call body%points%refresh_order()
-    n = body%points%n_inside
     dim = body%points%stencil%dim
-    if (n > 0) then
+    if (body%points%hi(1) >= 0) then
       window%lo = body%points%lo
       window%n = 1
       window%n(:dim) = body%points%hi(:dim) - body%points%lo(:dim) + body%points%stencil%width
     end if
-    call body%nodes%place(window)
+    call body%nodes%place(window, bytes_missing)
+    if (bytes_missing > 0) then
+      call raise(error, err_simulation, 'body "'//body%name//'" reaches over '// &
+                 to_text(window%size())//' nodes, which need '// &
+                 to_text(real(bytes_missing, wp)/1.0e9_wp, 3)//' GB of memory, more than there is', &
+                 hint='memory is for the box around the points of a body: use larger cells, or &
+                 &put points that lie far apart into bodies of their own')
+      return
+    end if
+    call body%points%refresh_order()
+    n = body%points%n_inside
     if (n == 0) return
     associate (points => body%points, nodes => body%nodes)
       call scatter(points%kin, body%points%stencil, window, useful_threads(threads, n), n, &

@@ -1,7 +1,7 @@
 !> Explicit time integration, stress updated last.
 module mpm_explicit_usl
   use mpm_description, only: description_t
-  use mpm_errors, only: error_t
+  use mpm_errors, only: err_input, error_t
   use mpm_explicit_steps, only: body_stable_step, locate_points, map_to_nodes, update_nodes, &
                                 update_points
   use mpm_kinds, only: wp
@@ -80,7 +80,13 @@ contains
     do i = 1, size(model%bodies)
       call locate_points(model, i, self%averaged, error)
       if (allocated(error)) return
-      if (model%bodies(i)%body%active) call map_to_nodes(model%bodies(i)%body, model%threads)
+      if (.not. model%bodies(i)%body%active) cycle
+      call map_to_nodes(model%bodies(i)%body, model%threads, error)
+      if (allocated(error)) then
+        ! What does not fit at the start is a matter of the config.
+        error%code = err_input
+        return
+      end if
     end do
   end subroutine explicit_usl_start
 
@@ -101,7 +107,8 @@ contains
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
         if (.not. body%active) cycle
-        call map_to_nodes(body, model%threads)
+        call map_to_nodes(body, model%threads, error)
+        if (allocated(error)) return
         if (allocated(body%boundary)) then
           call body%boundary%generate(model%grid, body%points, body%nodes)
         end if

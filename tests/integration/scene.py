@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -115,7 +116,7 @@ class Body:
     def wave_speed(self, density: float = 1000.0) -> float:
         """Return the speed of pressure waves."""
         e, nu = self.modulus, self.poisson
-        return float(np.sqrt(e * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / density))
+        return math.sqrt(e * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / density)
 
 
 @dataclass
@@ -192,6 +193,19 @@ grid
         path = folder / "scene.cfg"
         path.write_text(self.config())
         return path
+
+
+def drop_scene(**changes: object) -> Scene:
+    """Make one small body that falls freely in plane strain."""
+    body = Body("drop", block(2, [0.4, 0.6], [0.6, 0.8], [4, 4]))
+    settings: dict[str, object] = {
+        "sim_type": 2,
+        "lengths": [1.0, 1.0],
+        "cells": [10, 10],
+        "bodies": [body],
+        "t_stop": 0.01,
+    }
+    return Scene(**{**settings, **changes})  # type: ignore[arg-type]
 
 
 def numbers(values: Sequence[float]) -> str:

@@ -13,12 +13,14 @@ from scene import (
     EPSILON,
     GRAVITY,
     NVEL,
+    ROUNDING,
     TYPES,
     UP,
     Body,
     Run,
     Scene,
     block,
+    drop_scene,
     huang,
     positions,
     run_scene,
@@ -92,18 +94,6 @@ def pair_scene(sim_type: int, **changes: object) -> Scene:
         "rate": 100.0,
     }
     return Scene(sim_type, **{**settings, **changes})  # type: ignore[arg-type]
-
-
-def drop_scene(**changes: object) -> Scene:
-    """Make one small body that falls freely in plane strain."""
-    body = Body("drop", block(2, [0.4, 0.6], [0.6, 0.8], [4, 4]))
-    settings: dict[str, object] = {
-        "lengths": [1.0, 1.0],
-        "cells": [10, 10],
-        "bodies": [body],
-        "t_stop": 0.01,
-    }
-    return Scene(2, **{**settings, **changes})  # type: ignore[arg-type]
 
 
 def assert_shapes(frame: Frame) -> None:
@@ -211,7 +201,7 @@ def test_fields_agree(mpm3d: Run, tmp_path: Path, sim_type: int) -> None:
         held = nodes.fields["mass"] > 0.0
         assert np.all(nodes.fields["velocity"][~held] == 0.0)
         step = scene.dt * nodes.fields["velocity"]
-        assert np.allclose(nodes.fields["displacement"], step, rtol=1e-11)
+        assert np.allclose(nodes.fields["displacement"], step, rtol=4 * EPSILON)
 
 
 def test_mass_in_type_4(mpm3d: Run, tmp_path: Path) -> None:
@@ -295,73 +285,6 @@ def test_frame_0_is_the_initial_state(mpm3d: Run, tmp_path: Path, sim_type: int)
         assert (nodes.number, nodes.time) == (0, 0.25)
 
 
-def test_times_between_steps(mpm3d: Run, tmp_path: Path) -> None:
-    """A frame is the first state at or after a multiple of 1/rate, labelled with its own time."""
-    dt, rate = 1e-3, 300.0
-    run_scene(mpm3d, drop_scene(dt=dt, rate=rate, t_start=-0.002, t_stop=0.02), tmp_path)
-    for kind in ("fpd", "fnd"):
-        times = [frame.time for frame in read_series(tmp_path / "frames", kind, 0, "drop")]
-        # 22 ms hold 6.6 intervals of 10/3 ms.
-        assert len(times) == 7
-        for k, time in enumerate(times):
-            steps = int(np.ceil(k / rate / dt - 1e-9))
-            assert time == pytest.approx(-0.002 + steps * dt, rel=0.0, abs=4 * EPSILON * 0.02)
-
-
-def test_times_on_steps(mpm3d: Run, tmp_path: Path) -> None:
-    """Frames at multiples of dt miss no step to rounding, and the last is at the stop time."""
-    run_scene(mpm3d, drop_scene(dt=1e-4, rate=1000.0, t_stop=0.03), tmp_path)
-    series = read_series(tmp_path / "frames", "fpd", 0, "drop")
-    assert len(series) == 31
-    for k, frame in enumerate(series):
-        assert frame.time == pytest.approx(k / 1000.0, rel=4 * EPSILON)
-    assert series[-1].time == 0.03
-
-
-def test_state_belongs_to_its_label(mpm3d: Run, tmp_path: Path) -> None:
-    """A frame labelled t holds the state at t: n steps of free fall after n dt."""
-    dt = 1e-3
-    run_scene(mpm3d, drop_scene(dt=dt, rate=1000.0, t_stop=0.01), tmp_path)
-    for n, frame in enumerate(read_series(tmp_path / "frames", "fpd", 0, "drop")):
-        speed = GRAVITY * n * dt
-        assert np.allclose(frame.fields["velocity"][:, 1], -speed, rtol=1e-12, atol=0.0)
-
-
-def test_last_step_is_shortened(mpm3d: Run, tmp_path: Path) -> None:
-    """A run ends at the stop time, with a shorter last step when dt does not divide the span."""
-    dt, steps, rest = 1e-3, 10, 4e-4
-    t_stop = steps * dt + rest
-    run_scene(mpm3d, drop_scene(dt=dt, rate=1.0 / t_stop, t_stop=t_stop), tmp_path)
-    last = read_series(tmp_path / "frames", "fpd", 0, "drop")[-1]
-    assert last.number == 1
-    assert last.time == t_stop
-    mass = last.fields["mass"]
-    fall = GRAVITY * (dt**2 * steps * (steps + 1) / 2 + rest * t_stop)
-    moved = mass @ last.fields["displacement"][:, 1] / mass.sum()
-    assert moved == pytest.approx(-fall, rel=1e-12)
-
-
-def test_stop_time_within_one_step(mpm3d: Run, tmp_path: Path) -> None:
-    """A span shorter than dt is one short step."""
-    result = run_scene(mpm3d, drop_scene(dt=1e-3, rate=1e4, t_stop=1e-4), tmp_path)
-    assert "done: 1 steps" in result.stdout or "done: 1 step " in result.stdout
-    assert [f.time for f in read_series(tmp_path / "frames", "fpd", 0, "drop")] == [0.0, 1e-4]
-
-
-def test_rate_above_the_steps(mpm3d: Run, tmp_path: Path) -> None:
-    """There is at most one frame a step."""
-    run_scene(mpm3d, drop_scene(dt=1e-3, rate=1e5, t_stop=0.005), tmp_path)
-    times = [frame.time for frame in read_series(tmp_path / "frames", "fpd", 0, "drop")]
-    assert times == pytest.approx([0.0, 1e-3, 2e-3, 3e-3, 4e-3, 5e-3], rel=4 * EPSILON)
-
-
-def test_rate_0(mpm3d: Run, tmp_path: Path) -> None:
-    """Rate 0 writes the initial state only."""
-    run_scene(mpm3d, drop_scene(rate=0.0), tmp_path)
-    names = sorted(os.listdir(tmp_path / "frames"))
-    assert names == ["fnd.0.drop.0000000000.vtk", "fpd.0.drop.0000000000.vtk"]
-
-
 @pytest.mark.parametrize("digits", [None, 9, 12, 15, 16, 17])
 def test_digits(mpm3d: Run, tmp_path: Path, digits: int | None) -> None:
     """Numbers have the digits asked for, and nine at least."""
@@ -432,7 +355,7 @@ def test_points_keep_their_order(mpm3d: Run, tmp_path: Path) -> None:
     run_scene(mpm3d, scene, tmp_path)
     for frame in read_series(tmp_path / "frames", "fpd", 0, "drop"):
         way = np.array([20.0, 10.0, 0.0]) * frame.time
-        assert np.abs(frame.positions - positions(rows, 2) - way).max() <= 1e-12
+        assert np.abs(frame.positions - positions(rows, 2) - way).max() <= 12 * ROUNDING
 
 
 def test_projectile_before_its_launch(mpm3d: Run, tmp_path: Path) -> None:
@@ -463,7 +386,7 @@ def test_projectile_before_its_launch(mpm3d: Run, tmp_path: Path) -> None:
         fall = GRAVITY * 1e-6 * n * (n + 1) / 2
         way = np.array([3.0 * n * 1e-3, 2.0 * n * 1e-3 - fall, 0.0])
         mean = (frame.positions - positions(shot.rows, 2)).mean(axis=0)
-        assert np.abs(mean - way).max() <= 1e-13
+        assert np.abs(mean - way).max() <= 8 * ROUNDING
     waiting = read_frame(frame_path(folder, "fnd", 1, "shot", 0))
     assert not waiting.fields
     for frame in read_series(folder, "fpd", 0, "target"):

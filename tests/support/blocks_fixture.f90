@@ -46,7 +46,7 @@ contains
 
     do i = 1, size(model%bodies)
       call locate_points(model, i, .false., error)
-      call map_to_nodes(model%bodies(i)%body, 1)
+      call map_to_nodes(model%bodies(i)%body, 1, error)
     end do
   end subroutine map_all
 

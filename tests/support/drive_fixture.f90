@@ -16,7 +16,7 @@ module mpm_drive_fixture
 
 contains
 
-  !> A plane model with small blocks `a` and `b` at rest, apart from each other.
+  !> A model with small blocks `a` and `b` at rest, apart from each other.
   subroutine make_stones(sim_type, t_start, dt, model)
     !> Simulation TYPE.
     integer, intent(in) :: sim_type

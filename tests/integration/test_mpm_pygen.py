@@ -1,0 +1,64 @@
+"""Points files of mpm-pygen are taken in every TYPE."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from frames import read_series
+from scene import DIM, EPSILON, Run, drop_scene
+
+SHAPES = {
+    "1-block": (1, "block --min 0.2 --max 0.6 --velocity -2"),
+    "2-block": (2, "block --min 0.2 0.2 --max 0.6 0.5 --velocity 1 -2"),
+    "2-circle": (2, "circle --centre 0.4 0.4 --radius 0.2"),
+    "3-block": (3, "block --min 0.2 0.2 0.2 --max 0.6 0.5 0.4 --velocity 1 2 3"),
+    "3-cylinder": (3, "cylinder --centre 0.5 0.5 0.5 --radius 0.2 --length 0.4 --axis x"),
+    "3-sphere": (3, "sphere --centre 0.5 0.5 0.5 --radius 0.3"),
+    "4-block": (4, "block --min 0 0.2 --max 0.3 0.5 --velocity 0 -1 2"),
+    "4-circle": (4, "circle --centre 0.5 0.5 --radius 0.2"),
+    "4-sphere": (4, "sphere --centre 0 0.5 --radius 0.3"),
+    "5-block": (5, "block --min 0.2 0.2 --max 0.6 0.5 --velocity 1 2 3"),
+    "5-circle": (5, "circle --centre 0.4 0.4 --radius 0.2"),
+}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_points_of_mpm_pygen(mpm3d: Run, root: Path, tmp_path: Path, name: str) -> None:
+    """The program reads the file; mass and velocity of the first frame are those of the shape."""
+    sim_type, shape = SHAPES[name]
+    command = [*shape.split(), "--type", str(sim_type), "--spacing", "0.05", "--density", "1500"]
+    made = subprocess.run(
+        [sys.executable, "-m", "mpm_pygen", *command, "-o", "drop.points"],
+        cwd=tmp_path,
+        env={
+            **os.environ,
+            "PYTHONPATH": str(root / "mpm_pygen" / "src"),
+            "PYTHONDONTWRITEBYTECODE": "1",
+        },
+        capture_output=True,
+        text=True,
+    )
+    assert (made.returncode, made.stderr) == (0, "")
+
+    dim = DIM[sim_type]
+    scene = drop_scene(sim_type=sim_type, lengths=[1.0] * dim, cells=[10] * dim, rate=100.0)
+    (tmp_path / "scene.cfg").write_text(scene.config())
+    result = mpm3d("-c", "scene.cfg", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    first, last = read_series(tmp_path / "frames", "fpd", 0, "drop")
+    count, mass = len(first.positions), first.fields["mass"].sum()
+    assert f"{count} points" in made.stdout
+    assert f"mass {mass:.6g} " in made.stdout
+    assert np.allclose(first.fields["density"], 1500.0, rtol=8 * EPSILON)
+    words = shape.split()
+    if "--velocity" in words:
+        velocity = np.zeros(3)
+        values = words[words.index("--velocity") + 1 :]
+        velocity[: len(values)] = list(map(float, values))
+        assert np.array_equal(first.fields["velocity"], np.tile(velocity, (count, 1)))
+    assert np.all(last.fields["active"] == 1.0)
