@@ -111,7 +111,7 @@ contains
     if (lost > self%lost_reported) then
       self%lost_reported = lost
       call self%warn(to_text(lost)//trim(merge(' point has  ', ' points have', lost == 1))// &
-                     ' left the grid by t = '//to_text(model%time)//' s and no longer move')
+                     ' left the grid by t = '//to_text(model%time)//' s (no longer active)')
     end if
   end subroutine monitor_check
 

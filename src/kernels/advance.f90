@@ -202,7 +202,7 @@ contains
       value(p) = 1.0_wp + c*z
     end do
     do p = 1, n
-      if (abs(y(p)) > small) value(p) = bounded_exponential(y(p))
+      if (.not. abs(y(p)) <= small) value(p) = bounded_exponential(y(p))
     end do
   end subroutine exponential
 

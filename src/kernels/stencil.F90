@@ -11,7 +11,9 @@
 !!   uses the hats at its own position.
 !!
 !! A point on a node line belongs to the cell above it, a point on the upper face to the last cell,
-!! so that the one-sided derivative of one cell is used everywhere.
+!! so that the one-sided derivative of one cell is used everywhere. The far node of that cell, whose
+!! function vanishes at the point but whose derivative does not, is given a weight of a few
+!! roundings, so that it has a velocity also when no other point reaches it.
 module mpm_stencil
   use mpm_kinds, only: wp
   implicit none
@@ -156,6 +158,17 @@ contains
     end select
   end subroutine stencil_weights
 
+  !> Keep a local coordinate of a cell a few roundings away from both its nodes.
+  elemental function off_node(xi) result(inside)
+    !> Coordinate in the cell, 0 to 1.
+    real(wp), intent(in) :: xi
+    !> The coordinate, but neither 0 nor 1.
+    real(wp) :: inside
+    real(wp), parameter :: few = 4.0_wp*epsilon(1.0_wp)
+
+    inside = max(few, min(1.0_wp - few, xi))
+  end function off_node
+
   !> Hat functions of the point's cell, placed in a wider stencil.
   pure subroutine cell_weights(width, dim, s, base, n_cells, inverse_h, w, dw)
     !> Nodes per direction.
@@ -181,7 +194,7 @@ contains
     dw = 0.0_wp
     do d = 1, dim
       cell = min(int(s(d)), n_cells(d) - 1)
-      xi = s(d) - real(cell, wp)
+      xi = off_node(s(d) - real(cell, wp))
       j = cell - base(d) + 1
       w(j, d) = 1.0_wp - xi
       w(j + 1, d) = xi

@@ -14,6 +14,12 @@ module mpm_points
   private
   public :: points_t
 
+  !> Mass of a node whose velocity leaves out internal forces, relative to the points' mean mass.
+  !!
+  !! The force of a point on a node does not vanish with the point's weight there, so that the
+  !! acceleration of a node that a point has just reached has no bound.
+  real(wp), parameter :: relative_cutoff = 1.0e-9_wp
+
   !> Material points as arrays, component first.
   !!
   !! The arrays are in storage order: cell by cell at the last full sort, points that are inactive
@@ -59,6 +65,8 @@ module mpm_points
     integer, allocatable :: order(:)
     !> Points before each row of cells in `order`. (0:rows)
     integer, allocatable :: row_offset(:)
+    !> The velocity of a node with no more mass than this leaves out internal forces. [kg]
+    real(wp) :: mass_cutoff = 0.0_wp
     !> Lowest and highest first node of all stencils.
     integer :: lo(3) = 0, hi(3) = -1
     !> Points whose key changed since `order` was made.
@@ -163,6 +171,7 @@ contains
     type(stencil_t), intent(in) :: stencil
 
     self%stencil = stencil
+    self%mass_cutoff = relative_cutoff*sum(self%mass)/real(self%n, wp)
     call stencil_keys(stencil, self%n_inside, self%x(:, :self%n_inside), &
                       self%extent(:self%n_inside), self%key(:self%n_inside))
     call base_bounds(stencil, self%n_inside, self%key(:self%n_inside), self%lo, self%hi)

@@ -85,20 +85,27 @@ contains
                    points%extent(:n), points%mass(:n), points%volume(:n), &
                    points%velocity(:, :n), points%stress(:, :n), nodes%mass, &
                    nodes%momentum, nodes%force)
-      call finish_mapping(points%kin%nvel, window%size(), threads, points%body_force, nodes%mass, &
-                          nodes%momentum, nodes%force, nodes%velocity, nodes%increment)
+      call finish_mapping(points%kin%nvel, window%size(), threads, points%mass_cutoff, &
+                          points%body_force, nodes%mass, nodes%momentum, nodes%force, &
+                          nodes%velocity, nodes%increment)
     end associate
   end subroutine map_to_nodes
 
   !> Add the body force and form the nodal velocities.
-  subroutine finish_mapping(nvel, n, threads, body_force, mass, momentum, force, velocity, &
-                            increment)
+  !!
+  !! At nodes of negligible mass the acceleration by internal forces waits in `increment`: it takes
+  !! part in the velocities of the points, where the small weight of the node makes up for it and
+  !! momentum is conserved, but not in the velocity of the node, from which L is formed.
+  subroutine finish_mapping(nvel, n, threads, cutoff, body_force, mass, momentum, force, &
+                            velocity, increment)
     !> Components of a vector.
     integer, intent(in) :: nvel
     !> Number of nodes.
     integer, intent(in) :: n
     !> Number of threads.
     integer, intent(in) :: threads
+    !> Mass at or below which a node is negligible. [kg]
+    real(wp), intent(in) :: cutoff
     !> Acceleration by the body force. [m/s2]
     real(wp), intent(in) :: body_force(3)
     !> Nodal masses. [kg]
@@ -109,15 +116,20 @@ contains
     real(wp), intent(inout) :: force(nvel, n)
     !> Nodal velocities. [m/s]
     real(wp), intent(out) :: velocity(nvel, n)
-    !> Velocity increments: none yet. [m/s]
+    !> Accelerations by the internal forces of negligible nodes, 0 elsewhere. [m/s2]
     real(wp), intent(out) :: increment(nvel, n)
     integer :: i
 
     !$omp parallel do default(none) num_threads(useful_threads(threads, n)) schedule(static) &
-    !$omp shared(nvel, n, body_force, mass, momentum, force, velocity, increment) private(i)
+    !$omp shared(nvel, n, cutoff, body_force, mass, momentum, force, velocity, increment) &
+    !$omp private(i)
     do i = 1, n
       increment(:, i) = 0.0_wp
       if (mass(i) > 0.0_wp) then
+        if (mass(i) <= cutoff) then
+          increment(:, i) = force(:, i)/mass(i)
+          force(:, i) = 0.0_wp
+        end if
         force(:, i) = force(:, i) + mass(i)*body_force(:nvel)
         velocity(:, i) = momentum(:, i)/mass(i)
       else
@@ -158,8 +170,8 @@ contains
     real(wp), intent(inout) :: momentum(nvel, n)
     !> Nodal velocities. [m/s]
     real(wp), intent(out) :: velocity(nvel, n)
-    !> Velocity increments of the step. [m/s]
-    real(wp), intent(out) :: increment(nvel, n)
+    !> On entry accelerations that `force` leaves out, on exit velocity increments. [m/s]
+    real(wp), intent(inout) :: increment(nvel, n)
     integer :: i
 
     !$omp parallel do default(none) num_threads(useful_threads(threads, n)) schedule(static) &
@@ -168,7 +180,7 @@ contains
       if (mass(i) > 0.0_wp) then
         momentum(:, i) = momentum(:, i) + dt*force(:, i)
         velocity(:, i) = momentum(:, i)/mass(i)
-        increment(:, i) = dt*force(:, i)/mass(i)
+        increment(:, i) = dt*(force(:, i)/mass(i) + increment(:, i))
       else
         velocity(:, i) = 0.0_wp
         increment(:, i) = 0.0_wp

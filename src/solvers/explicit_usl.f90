@@ -49,6 +49,9 @@ contains
     call description%add_note('TYPE 4 carries the inertia of the rotating basis (v_theta^2/r and &
                               &v_r v_theta/r), which mpm_3d lacks; close to the axis 1/r is &
                               &replaced by its limit.')
+    call description%add_note('The velocity of a node with less than 1e-9 of the mean mass of the &
+                              &points leaves out internal forces, which have no bound there; the &
+                              &points still receive them, so that momentum is conserved.')
     call description%add_note('The stable step of each body is compared with dt before the first &
                               &step and at each frame. A point that is not finite, moves more than &
                               &a cell or loses its volume stops the run.')

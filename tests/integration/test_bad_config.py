@@ -288,4 +288,4 @@ def test_grid_too_large_for_the_memory(executable: Path, tmp_path: Path, cells: 
         errors="replace",
         preexec_fn=limit_memory,
     )
-    expect_failure(result, tmp_path, BAD_INPUT, "scene.cfg:", "memory")
+    expect_failure(result, tmp_path, BAD_INPUT, "scene.cfg: ", "memory")

@@ -91,8 +91,8 @@ def test_fall_under_any_gravity(mpm3d: Run, tmp_path: Path, sim_type: int, cpdi:
     "components",
     [
         pytest.param((5.0123, -6.0456, 4.0789), id="between-nodes"),
-        # Whole parts of a cell in a step: now and then points lie on a node line but for rounding,
-        # and the node beyond it gets 1e-16 of a mass.
+        # Whole parts of a cell in a step: now and then points lie on a node line, where the node
+        # beyond it gets a gradient but no mass, or 1e-16 of one.
         pytest.param((5.0, -6.0, 4.0), id="over-nodes"),
     ],
 )
