@@ -213,7 +213,8 @@ contains
     end do
     hint = nearest_name(argument, known)
     if (len(hint) > 0) hint = 'did you mean '//hint//'?   '
-    call raise(error, err_usage, 'unknown option "'//excerpt(argument)//'"', hint=hint//'(mpm3d --help)')
+    call raise(error, err_usage, 'unknown option "'//excerpt(argument)//'"', &
+               hint=hint//'(mpm3d --help)')
   end subroutine raise_unknown
 
 end module mpm_command_line

@@ -138,7 +138,8 @@ contains
     end do
     hint = nearest_name(name, known)
     if (len(hint) > 0) hint = 'did you mean "'//hint//'"?   '
-    call raise(error, err_usage, 'there is no class "'//excerpt(name)//'"', hint=hint//'(mpm3d --list)')
+    call raise(error, err_usage, 'there is no class "'//excerpt(name)//'"', &
+               hint=hint//'(mpm3d --list)')
   end subroutine describe_class
 
 end program mpm3d

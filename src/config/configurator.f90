@@ -82,9 +82,9 @@ contains
     integer :: i, first
 
     if (size(document%entries) > 0) then
-      call raise(error, err_input, 'key "'//excerpt(document%entries(1)%key)//'" outside of a section', &
-                 document%path, document%entries(1)%line, 'keys belong between the braces of a &
-                 &section such as job { }')
+      call raise(error, err_input, 'key "'//excerpt(document%entries(1)%key)// &
+                 '" outside of a section', document%path, document%entries(1)%line, &
+                 'keys belong between the braces of a section such as job { }')
       return
     end if
     do i = 1, size(section_names)
@@ -99,8 +99,8 @@ contains
           else
             near = 'sections: job, serializer, driver, solver, grid, body, contact'
           end if
-          call raise(error, err_input, 'unknown section "'//excerpt(section%name)//'"', document%path, &
-                     section%line, near)
+          call raise(error, err_input, 'unknown section "'//excerpt(section%name)//'"', &
+                     document%path, section%line, near)
           return
         end if
         first = document%find_section(section%name)
@@ -149,8 +149,8 @@ contains
       valid = ieee_is_finite(model%dt)
       if (valid) valid = model%dt > 0.0_wp
       if (.not. valid) then
-        call raise(error, err_input, 'dt = '//excerpt(value%text)//' is not a time step', value%file, &
-                   value%line, 'dt must be a finite number above 0')
+        call raise(error, err_input, 'dt = '//excerpt(value%text)//' is not a time step', &
+                   value%file, value%line, 'dt must be a finite number above 0')
         return
       end if
       call single_value(section, document%path, 't', value, found, error)
@@ -342,7 +342,8 @@ contains
     if (allocated(error)) return
     call select_section(document, selector, s)
     if (s == 0) then
-      call raise(error, err_usage, '--set '//excerpt(text, 80)//': the config has no section "'//excerpt(selector)//'"', &
+      call raise(error, err_usage, '--set '//excerpt(text, 80)//': the config has no section "'// &
+                 excerpt(selector)//'"', &
                  hint='write section.key=value; a body or contact is body.NAME or body.NUMBER')
       return
     end if

@@ -232,8 +232,9 @@ contains
     else
       near = 'the class takes no entries in this list'
     end if
-    call raise(error, err_input, description%name//' has no property "'//excerpt(value%name)//'" here', &
-               value%file, value%line, near//'   (mpm3d --describe '//description%name//')')
+    call raise(error, err_input, description%name//' has no property "'//excerpt(value%name)// &
+               '" here', value%file, value%line, &
+               near//'   (mpm3d --describe '//description%name//')')
   end subroutine find_named
 
   !> The property that the entry at a position means.
@@ -335,8 +336,9 @@ contains
     low = number < property%lower .or. (property%above .and. number <= property%lower)
     high = number > property%upper .or. (property%below .and. number >= property%upper)
     if (.not. (low .or. high)) return
-    call raise(error, err_input, property%name//' = '//excerpt(value%text)//' is out of bounds: '// &
-               bounds_text(property), value%file, value%line, property%meaning)
+    call raise(error, err_input, property%name//' = '//excerpt(value%text)// &
+               ' is out of bounds: '//bounds_text(property), value%file, value%line, &
+               property%meaning)
   end subroutine check_bounds
 
   !> The bounds of a property in words.

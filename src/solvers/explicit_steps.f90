@@ -71,7 +71,8 @@ contains
     if (bytes_missing > 0) then
       call raise(error, err_simulation, 'body "'//body%name//'" reaches over '// &
                  to_text(window%size())//' nodes, which need '// &
-                 to_text(real(bytes_missing, wp)/1.0e9_wp, 3)//' GB of memory, more than there is', &
+                 to_text(real(bytes_missing, wp)/1.0e9_wp, 3)// &
+                 ' GB of memory, more than there is', &
                  hint='memory is for the box around the points of a body: use larger cells, or &
                  &put points that lie far apart into bodies of their own')
       return
