@@ -3,13 +3,19 @@ module mpm_strings
   use mpm_kinds, only: lp, wp
   implicit none
   private
-  public :: append_text, excerpt, nearest_name, string_t, to_text
+  public :: append_text, counted, excerpt, nearest_name, string_t, to_text
 
   !> A text of any length, for lists of texts.
   type :: string_t
     !> The text.
     character(:), allocatable :: text
   end type string_t
+
+  !> A number and what is counted: `1 step`, `3 steps`.
+  interface counted
+    module procedure counted_integer
+    module procedure counted_long
+  end interface counted
 
   !> A number as short text.
   interface to_text
@@ -55,6 +61,31 @@ contains
     write (buffer, '(i0)') value
     text = trim(buffer)
   end function long_to_text
+
+  !> A number and what is counted.
+  pure function counted_integer(n, what) result(text)
+    !> The number.
+    integer, intent(in) :: n
+    !> One of them.
+    character(*), intent(in) :: what
+    !> `1 number` or `3 numbers`.
+    character(:), allocatable :: text
+
+    text = counted_long(int(n, lp), what)
+  end function counted_integer
+
+  !> A long number and what is counted.
+  pure function counted_long(n, what) result(text)
+    !> The number.
+    integer(lp), intent(in) :: n
+    !> One of them.
+    character(*), intent(in) :: what
+    !> `1 number` or `3 numbers`.
+    character(:), allocatable :: text
+
+    text = long_to_text(n)//' '//what
+    if (n /= 1) text = text//'s'
+  end function counted_long
 
   !> Short text of a real for messages, `digits` significant digits (default 6).
   pure function real_to_text(value, digits) result(text)

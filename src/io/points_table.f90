@@ -3,7 +3,7 @@ module mpm_points_table
   use mpm_errors, only: err_input, error_t, raise
   use mpm_kinds, only: ip, lp, wp
   use mpm_number_parser, only: number_ok, number_too_large, parse_integer, parse_real, parse_special
-  use mpm_strings, only: excerpt, to_text
+  use mpm_strings, only: counted, excerpt, to_text
   use mpm_text_file, only: has_byte_order_mark, read_whole_file
   implicit none
   private
@@ -382,18 +382,5 @@ contains
 
     is_blank = c == blanks(1:1) .or. c == blanks(2:2) .or. c == blanks(3:3)
   end function is_blank
-
-  !> A number and what is counted.
-  pure function counted(n, what) result(text)
-    !> The number.
-    integer, intent(in) :: n
-    !> One of them.
-    character(*), intent(in) :: what
-    !> `1 number` or `3 numbers`.
-    character(:), allocatable :: text
-
-    text = to_text(n)//' '//what
-    if (n /= 1) text = text//'s'
-  end function counted
 
 end module mpm_points_table

@@ -3,7 +3,7 @@ module mpm_job_report
   use, intrinsic :: iso_fortran_env, only: output_unit
   use mpm_job, only: job_t
   use mpm_kinds, only: lp, wp
-  use mpm_strings, only: to_text
+  use mpm_strings, only: counted, to_text
   use mpm_window, only: window_t
   implicit none
   private
@@ -36,7 +36,7 @@ contains
     memory = job%memory()
     call line('memory:  '//to_text(real(memory, wp)/1.0e6_wp, 3)//' MB for points and nodes')
     call line('time:    t = '//to_text(job%model%t_start)//' to '//to_text(job%driver%t_stop)// &
-              ' s, dt = '//to_text(job%model%dt)//' s, '//to_text(steps)//' steps')
+              ' s, dt = '//to_text(job%model%dt)//' s, '//counted(steps, 'step'))
     frames = 1
     if (job%serializer%rate > 0.0_wp) then
       frames = frames + int(min(real(steps, wp), (job%driver%t_stop - job%model%t_start)* &
@@ -57,8 +57,7 @@ contains
     text = ''
     do i = 1, size(job%model%bodies)
       associate (body => job%model%bodies(i)%body)
-        text = 'body:    '//to_text(body%id)//' "'//body%name//'", '//to_text(body%points%n)// &
-               ' points'
+        text = 'body:    '//to_text(body%id)//' "'//body%name//'", '//counted(body%points%n, 'point')
         if (body%points%n_inside < body%points%n) then
           text = text//' ('//to_text(body%points%n - body%points%n_inside)//' inactive)'
         end if

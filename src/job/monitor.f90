@@ -7,7 +7,7 @@ module mpm_monitor
   use mpm_model, only: model_t
   use mpm_serializer, only: serializer_t
   use mpm_solver, only: solver_t
-  use mpm_strings, only: to_text
+  use mpm_strings, only: counted, to_text
   implicit none
   private
   public :: monitor_t
@@ -80,8 +80,7 @@ contains
     allocate (self%warned(size(model%bodies)))
     self%warned = .false.
     call self%check(model, solver)
-    call self%say('running '//to_text(steps)//' steps on '//to_text(model%threads)// &
-                  trim(merge(' thread ', ' threads', model%threads == 1)))
+    call self%say('running '//counted(steps, 'step')//' on '//counted(model%threads, 'thread'))
     call system_clock(self%clock_start)
     self%clock_progress = self%clock_start
   end subroutine monitor_begin
@@ -110,7 +109,7 @@ contains
     end do
     if (lost > self%lost_reported) then
       self%lost_reported = lost
-      call self%warn(to_text(lost)//trim(merge(' point has  ', ' points have', lost == 1))// &
+      call self%warn(counted(lost, 'point')//trim(merge(' has ', ' have', lost == 1))// &
                      ' left the grid by t = '//to_text(model%time)//' s (no longer active)')
     end if
   end subroutine monitor_check
@@ -176,7 +175,7 @@ contains
       achar(13)
     seconds = self%elapsed()
     call measure(model, now)
-    call self%say('done: '//to_text(model%step)//' steps to t = '//to_text(model%time)//' s in '// &
+    call self%say('done: '//counted(model%step, 'step')//' to t = '//to_text(model%time)//' s in '// &
                   duration(seconds)//', '// &
                   to_text(1.0e9_wp*seconds/max(1.0_wp, self%point_steps), 3)// &
                   ' ns per point and step')
