@@ -253,7 +253,7 @@ MALFORMED = [
     (module_of("@assertEqual(1, &", "  2)"), 11, "stands on one line"),
     (module_of("@assertEqual('a, 'a')"), 11, "is not closed"),
     (module_of("@assertTrue(.true.) ! because"), 11, "nothing may follow"),
-    (module_of("@assertTrue(.true.)" + 120 * " " + "!"), 11, "longer than 132 columns"),
+    (module_of("@assertTrue(.true.)" + 120 * " " + "!"), 11, "longer than 126 columns"),
     (module_of("").replace("@test", "@test(ifdef=X)"), 8, "stands alone"),
     (module_of("").replace("@test", "@test\n"), 8, "must be followed"),
     (module_of("").replace("test_one()", "test_one(n)"), 8, "must be followed"),
