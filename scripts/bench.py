@@ -59,9 +59,7 @@ def write_scene(scene: Scene, folder: Path, points: int) -> int:
     velocity = [0.1, 0.2, 0.3][: sim_type.components]
     if sim_type == SimulationType(4):
         velocity = [0.0, 0.2, 0.0]
-    block = fill(
-        Block(lower, upper), sim_type, spacing=spacing, density=1000.0, velocity=velocity
-    )
+    block = fill(Block(lower, upper), sim_type, spacing=spacing, density=1000.0, velocity=velocity)
     write_points(folder / "block.points", block)
     box = ", ".join(["1.0"] * dim)
     counts = ", ".join([str(cells)] * dim)

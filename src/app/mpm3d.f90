@@ -13,7 +13,6 @@ program mpm3d
   use mpm_monitor, only: monitor_t, quiet
   use mpm_registry, only: describe_classes, role_names
   use mpm_strings, only: append_text, excerpt, nearest_name, string_t
-  use omp_lib, only: omp_get_max_threads
   implicit none
 
   interface
@@ -75,7 +74,6 @@ contains
     call configure(command%config, command%overrides, job, error)
     if (allocated(error)) return
     if (command%threads > 0) job%model%threads = command%threads
-    if (job%model%threads == 0) job%model%threads = omp_get_max_threads()
     call job%start(error)
     if (allocated(error)) return
     if (command%verbosity > quiet) call report_job(job)

@@ -48,7 +48,7 @@ module mpm_box_faces
     procedure :: first => box_faces_first
     !> Integral of a node's function over a face.
     procedure :: area => box_faces_area
-    !> Fix components of velocity, momentum and force on a face.
+    !> Fix components of velocity, momentum, force and waiting acceleration on a face.
     procedure :: fix => box_faces_fix
     !> Mark components as fixed in a mask for output.
     procedure :: mark => box_faces_mark
@@ -227,6 +227,7 @@ contains
           nodes%velocity(first:last, n) = 0.0_wp
           nodes%momentum(first:last, n) = 0.0_wp
           nodes%force(first:last, n) = 0.0_wp
+          nodes%increment(first:last, n) = 0.0_wp
         end do
       end do
     end do

@@ -6,7 +6,7 @@ module mpm_box_rules
   use mpm_kinds, only: wp
   implicit none
   private
-  public :: apply_rules, node_rules
+  public :: apply_rules, hold_increment, node_rules
 
   !> Rule of a component that is fixed; the other rules are the codes of the walls.
   integer, parameter :: fixed = 1
@@ -101,6 +101,23 @@ contains
     end do
     if (any(largest > 0.0_wp)) call rub(norm2(largest), dt, momentum, force)
   end subroutine apply_rules
+
+  !> Drop the accelerations that wait at a node of negligible mass where its walls take the force.
+  pure subroutine hold_increment(rules, increment)
+    !> Rules of the components, as of `node_rules`.
+    integer, intent(in) :: rules(3)
+    !> Accelerations by internal forces that are not part of the node's force. [m/s2] (nvel)
+    real(wp), intent(inout) :: increment(:)
+    integer :: c
+
+    if (any(abs(rules) == wall_driven) .or. any(abs(rules) == wall_bounded)) then
+      increment = 0.0_wp
+    else
+      do c = 1, size(increment)
+        if (rules(c) == fixed .or. abs(rules(c)) == wall_friction) increment(c) = 0.0_wp
+      end do
+    end if
+  end subroutine hold_increment
 
   !> Fix one component.
   pure subroutine fix(c, velocity, momentum, force)

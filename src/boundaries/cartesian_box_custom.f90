@@ -2,7 +2,7 @@
 module mpm_cartesian_box_custom
   use mpm_boundary, only: boundary_t
   use mpm_box_faces, only: axis_names, axis_of, box_faces_t, face_names, is_lower
-  use mpm_box_rules, only: apply_rules, node_rules
+  use mpm_box_rules, only: apply_rules, hold_increment, node_rules
   use mpm_box_wall, only: box_wall_t, read_walls, wall_bounded, wall_free, wall_friction, &
                           wall_traction
   use mpm_description, only: description_t, types_with_dim
@@ -239,6 +239,8 @@ contains
               n = nodes%window%index(node)
               call apply_rules(self%faces, self%walls, node, dt, nodes%mass(n), &
                                nodes%velocity(:, n), nodes%momentum(:, n), nodes%force(:, n))
+              if (all(abs(nodes%increment(:, n)) <= 0.0_wp)) cycle
+              call hold_increment(node_rules(self%faces, self%walls, node), nodes%increment(:, n))
             end do
           end do
         end do

@@ -30,6 +30,8 @@ module mpm_configurator
   !> Keys of the sections of single objects.
   character(14), parameter :: object_keys(4) = &
     [character(14) :: 'class', 'properties', 'int-properties', 'str-properties']
+  !> Steps of a run that no machine would finish.
+  real(wp), parameter :: most_steps = 1.0e15_wp
   !> Keys of a contact.
   character(14), parameter :: contact_keys(5) = [object_keys, 'name          ']
 
@@ -232,6 +234,14 @@ contains
                                  ' s is not after the start time '// &
                                  to_text(job%model%t_start)//' s', error, &
                                  'the first property of the driver is the stop time')
+          return
+        end if
+        ! Halves do not overflow, and neither side is a quotient by a tiny dt.
+        if (0.5_wp*job%driver%t_stop - 0.5_wp*job%model%t_start > &
+            0.5_wp*most_steps*min(job%model%dt, 1.0e290_wp)) then
+          call properties%reject('t_stop', 'the run would take more than '// &
+                                 to_text(most_steps)//' steps', error, &
+                                 'use a larger dt or an earlier stop time')
           return
         end if
       end associate

@@ -84,7 +84,7 @@ contains
       do d = 1, model%kin%dim
         body%points%velocity(d, :) = self%launch_velocity(d)
       end do
-      body%active = .false.
+      body%active = due(model)
     end associate
   end subroutine ballistic_driver_prepare
 
@@ -94,11 +94,18 @@ contains
     class(ballistic_driver_t), intent(inout) :: self
     !> The model at the start of the step.
     type(model_t), intent(inout) :: model
-    real(wp) :: slack
 
-    ! t_start + n dt may miss 0 by a rounding error.
-    slack = 1.0e-6_wp*model%dt
-    if (model%time >= -slack) model%bodies(self%projectile)%body%active = .true.
+    if (due(model)) model%bodies(self%projectile)%body%active = .true.
   end subroutine ballistic_driver_before_step
+
+  !> Whether the time has come: t >= 0, which t_start + n dt may miss by a rounding error.
+  pure function due(model)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> Whether the projectile is launched.
+    logical :: due
+
+    due = model%time >= -1.0e-6_wp*model%dt
+  end function due
 
 end module mpm_ballistic_driver

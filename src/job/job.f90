@@ -7,6 +7,7 @@ module mpm_job
   use mpm_monitor, only: monitor_t
   use mpm_serializer, only: serializer_t
   use mpm_solver, only: solver_t
+  use omp_lib, only: omp_get_max_threads
   implicit none
   private
   public :: job_t
@@ -43,6 +44,7 @@ contains
     integer :: i
 
     self%model%time = self%model%t_start
+    if (self%model%threads == 0) self%model%threads = omp_get_max_threads()
     do i = 1, size(self%model%bodies)
       self%model%bodies(i)%body%points%body_force = self%driver%body_force(self%model%kin)
     end do

@@ -21,7 +21,8 @@ contains
     type(window_t) :: whole
     real(wp) :: lower(3), upper(3)
     integer(lp) :: steps, memory
-    integer :: frames, dim
+    integer(lp) :: frames
+    integer :: dim
 
     dim = job%model%kin%dim
     whole = job%model%grid%whole()
@@ -40,7 +41,7 @@ contains
     frames = 1
     if (job%serializer%rate > 0.0_wp) then
       frames = frames + int(min(real(steps, wp), (job%driver%t_stop - job%model%t_start)* &
-                                job%serializer%rate + 1.0e-6_wp))
+                                job%serializer%rate + 1.0e-6_wp), lp)
     end if
     call line('frames:  '//to_text(frames)//' in '//job%serializer%destination()// &
               ', for the points and the nodes of each body')
@@ -57,11 +58,12 @@ contains
     text = ''
     do i = 1, size(job%model%bodies)
       associate (body => job%model%bodies(i)%body)
-        text = 'body:    '//to_text(body%id)//' "'//body%name//'", '//counted(body%points%n, 'point')
+        text = 'body:    '//to_text(body%id)//' "'//body%name//'", '// &
+               counted(body%points%n, 'point')
         if (body%points%n_inside < body%points%n) then
           text = text//' ('//to_text(body%points%n - body%points%n_inside)//' inactive)'
         end if
-        text = text//', mass '//to_text(sum(body%points%mass))//' kg'
+        text = text//', mass '//to_text(sum(body%points%mass(:body%points%n_inside)))//' kg'
         call job%solver%stable_step(job%model, i, speed, limit)
         if (speed > 0.0_wp) then
           text = text//', wave speed '//to_text(speed)//' m/s, stable step '//to_text(limit)//' s'

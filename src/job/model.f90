@@ -13,7 +13,7 @@ module mpm_model
   type :: model_t
     !> Component counts of the job's TYPE.
     type(kinematics_t) :: kin
-    !> Number of threads.
+    !> Number of threads; 0, until the job starts, for what OMP_NUM_THREADS says.
     integer :: threads = 1
     !> Start time. [s]
     real(wp) :: t_start = 0.0_wp

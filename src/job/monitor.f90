@@ -73,12 +73,17 @@ contains
     class(solver_t), intent(in) :: solver
     !> Number of steps.
     integer(lp), intent(in) :: steps
+    integer :: i
 
     call measure(model, self%at_start)
     self%shows_progress = is_terminal(standard_output)
     if (self%verbosity /= normal) self%shows_progress = .false.
     allocate (self%warned(size(model%bodies)))
     self%warned = .false.
+    do i = 1, size(model%bodies)
+      if (model%bodies(i)%body%points%n_inside > 0) cycle
+      call self%warn('body "'//model%bodies(i)%body%name//'" has no active point')
+    end do
     call self%check(model, solver)
     call self%say('running '//counted(steps, 'step')//' on '//counted(model%threads, 'thread'))
     call system_clock(self%clock_start)
@@ -154,7 +159,7 @@ contains
     speed = real(model%step, wp)/seconds
     write (output_unit, '(a)', advance='no') achar(13)//'t = '//to_text(model%time, 4)//' s   '// &
       to_text(int((100*model%step)/steps))//' %   frames '//to_text(frames)//'   '// &
-      to_text(speed, 3)//' steps/s   left '//duration(real(steps - model%step, wp)/speed)// &
+      to_text(speed, 3)//' steps/s   left '//duration(anint(real(steps - model%step, wp)/speed))// &
       '      '
     flush (output_unit)
   end subroutine monitor_progress
@@ -175,10 +180,10 @@ contains
       achar(13)
     seconds = self%elapsed()
     call measure(model, now)
-    call self%say('done: '//counted(model%step, 'step')//' to t = '//to_text(model%time)//' s in '// &
-                  duration(seconds)//', '// &
+    call self%say('done: '//counted(model%step, 'step')//' to t = '// &
+                  to_text(model%time)//' s in '//duration(seconds)//', '// &
                   to_text(1.0e9_wp*seconds/max(1.0_wp, self%point_steps), 3)// &
-                  ' ns per point and step')
+                  ' ns per point and step, frames included')
     call self%say('momentum: '//vector_text(self%at_start%momentum(:model%kin%nvel))//' -> '// &
                   vector_text(now%momentum(:model%kin%nvel))//' kg m/s, change '// &
                   to_text(relative(norm2(now%momentum - self%at_start%momentum), &

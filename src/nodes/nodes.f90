@@ -29,7 +29,8 @@ module mpm_nodes
     real(wp), allocatable :: force(:, :)
     !> Velocity, after the grid update that of the end of the step. [m/s] (nvel, nn)
     real(wp), allocatable :: velocity(:, :)
-    !> Velocity increment of the step, dt f/m. [m/s] (nvel, nn)
+    !> Velocity increment of the step, dt f/m; until the grid update, accelerations of nodes of
+    !! negligible mass that `force` leaves out. [m/s] (nvel, nn)
     real(wp), allocatable :: increment(:, :)
   contains
     !> Set up the nodes of a body.

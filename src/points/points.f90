@@ -213,7 +213,7 @@ contains
     if (self%n_inside == 0) return
     call sort_by_cell(self%stencil, self%n_inside, self%key(:self%n_inside), self%lo, self%hi, &
                       self%order(:self%n_inside), self%row_offset)
-    if (8*self%n_drifted < self%n_inside) return
+    if (self%n_drifted < self%n_inside/8) return
     self%n_drifted = 0
     allocate (order(self%n))
     order(:self%n_inside) = self%order(:self%n_inside)

@@ -90,6 +90,7 @@ contains
         error%code = err_input
         return
       end if
+      model%bodies(i)%body%nodes%increment = 0.0_wp
     end do
   end subroutine explicit_usl_start
 

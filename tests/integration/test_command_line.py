@@ -206,7 +206,9 @@ def test_summary_of_a_run(mpm3d: Run, tmp_path: Path) -> None:
     assert (result.returncode, result.stderr) == (0, "")
     text = result.stdout
     assert "running 20 steps on 1 thread" in text
-    assert re.search(r"^done: 20 steps to t = 0.02 s in .* ns per point and step$", text, re.M)
+    assert re.search(
+        r"^done: 20 steps to t = 0.02 s in .* ns per point and step, frames included$", text, re.M
+    )
     assert re.search(r"^momentum: .* -> .* kg m/s", text, re.M)
     assert re.search(r"^energy: kinetic .*, strain .*, potential .* J", text, re.M)
     assert re.search(r"^frames: 3 in frames", text, re.M)

@@ -338,7 +338,10 @@ def test_all_points_inactive(mpm3d: Run, tmp_path: Path) -> None:
     """A body without an active point does nothing."""
     scene = drop_scene(rate=100.0)
     scene.bodies[0].rows[:, -1] = 0.0
-    run_scene(mpm3d, scene, tmp_path)
+    scene.write(tmp_path)
+    result = mpm3d("-c", "scene.cfg", cwd=tmp_path)
+    assert result.returncode == 0
+    assert result.stderr == 'warning: body "drop" has no active point\n'
     last = read_series(tmp_path / "frames", "fpd", 0, "drop")[-1]
     assert np.array_equal(last.positions, positions(scene.bodies[0].rows, 2))
     assert np.all(last.fields["active"] == 0.0)
