@@ -2,7 +2,7 @@
 module mpm_mass_gradient
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
-  use mpm_stencil, only: axis_fraction, decode_keys, stencil_t, stencil_weights
+  use mpm_stencil, only: axis_fraction, decode_keys, outside, stencil_t, stencil_weights
   use mpm_window, only: window_t
   implicit none
   private
@@ -40,7 +40,8 @@ contains
     !> Gradients, components beyond dim 0. [kg/m] (nvel, nn)
     real(wp), intent(out) :: gradient(:, :)
     real(wp) :: w(stencil%width, kin%dim, 1), dw(stencil%width, kin%dim, 1), m, r_floor
-    integer :: base(3, 1), rows, low, high, k, p
+    integer :: base(3, 1), rows, low, high, k, p, previous
+    logical :: near
 
     gradient = 0.0_wp
     r_floor = axis_fraction*stencil%h(1)
@@ -50,10 +51,16 @@ contains
       high = min(rows - 1, window%lo(d) + window%n(d) - 1 - first_row)
     end associate
     if (high < low) return
+    previous = outside
+    near = .false.
     do k = row_offset(low) + 1, row_offset(high + 1)
       p = order(k)
-      call decode_keys(stencil, 1, key(p:p), base)
-      if (.not. reaches(stencil, kin%dim, base(:, 1), window)) cycle
+      if (key(p) /= previous) then
+        previous = key(p)
+        call decode_keys(stencil, 1, key(p:p), base)
+        near = reaches(stencil, kin%dim, base(:, 1), window)
+      end if
+      if (.not. near) cycle
       call stencil_weights(stencil, 1, x(:, p), extent(p:p), base, w, dw)
       m = mass(p)
       if (kin%sim_type == type_axisymmetric) m = m/max(x(1, p), r_floor)
