@@ -51,6 +51,7 @@ contains
     call self%driver%prepare(self%model, error)
     if (allocated(error)) return
     call self%solver%start(self%model, error)
+    if (.not. allocated(error)) call self%serializer%check(self%model, error)
     if (.not. allocated(error)) return
     if (len(error%file) == 0) error%file = self%config
   end subroutine job_start

@@ -20,6 +20,8 @@ module mpm_serializer
   contains
     !> Set up from the properties; nothing is written.
     procedure(init_i), deferred :: init
+    !> Refuse a model whose frames would be too large; nothing is written.
+    procedure :: check => serializer_check
     !> Make the folder of the frames.
     procedure(open_i), deferred :: open
     !> Write the state as the next frame.
@@ -79,6 +81,19 @@ module mpm_serializer
   end interface
 
 contains
+
+  !> Most serializers take any model.
+  subroutine serializer_check(self, model, error)
+    !> The serializer.
+    class(serializer_t), intent(in) :: self
+    !> The model at its start.
+    type(model_t), intent(in) :: model
+    !> Frames that are too large.
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (unused => self, unused_model => model)
+    end associate
+  end subroutine serializer_check
 
   !> Whether a frame is due at a time: t - t_start >= k / rate for the next frame k.
   pure function serializer_due(self, model, time) result(due)

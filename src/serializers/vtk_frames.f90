@@ -2,10 +2,11 @@
 module mpm_vtk_frames
   use mpm_body, only: body_t
   use mpm_description, only: description_t
-  use mpm_errors, only: error_t
+  use mpm_errors, only: err_input, error_t, raise
   use mpm_field_writer, only: field_writer_t
   use mpm_files, only: delete_file, join_path, make_directories
   use mpm_kinds, only: lp, wp
+  use mpm_memory, only: available_memory
   use mpm_model, only: model_t
   use mpm_number_parser, only: parse_real
   use mpm_number_text, only: default_digits
@@ -15,12 +16,16 @@ module mpm_vtk_frames
   use mpm_text_writer, only: text_writer_t
   use mpm_vtk_node_fields, only: vtk_node_fields_t
   use mpm_vtk_point_fields, only: vtk_point_fields_t
+  use mpm_window, only: window_t
   implicit none
   private
   public :: add_vtk_properties, vtk_frames_t
 
   !> Longest run name in a title, so that readers, which take 255 characters, see all of the title.
   integer, parameter :: max_run_name = 160
+
+  !> Bytes of a node in the shortest frame: position, cell, cell type and fields of zeros.
+  integer(lp), parameter :: least_node_bytes = 50
 
   !> A point file and a node file for each body and frame.
   type, abstract, extends(serializer_t) :: vtk_frames_t
@@ -33,6 +38,7 @@ module mpm_vtk_frames
     integer :: digits = default_digits
   contains
     procedure :: init => vtk_frames_init
+    procedure :: check => vtk_frames_check
     procedure :: open => vtk_frames_open
     procedure :: write_frame => vtk_frames_write_frame
     procedure :: destination => vtk_frames_destination
@@ -121,6 +127,28 @@ contains
                              'write "." for the working directory')
     end if
   end subroutine vtk_frames_init
+
+  !> Refuse a grid whose node frames could not be read back on this machine.
+  subroutine vtk_frames_check(self, model, error)
+    !> The serializer.
+    class(vtk_frames_t), intent(in) :: self
+    !> The model at its start.
+    type(model_t), intent(in) :: model
+    !> More text in a frame than the machine has memory.
+    type(error_t), allocatable, intent(out) :: error
+    type(window_t) :: whole
+    integer(lp) :: n_bytes
+
+    associate (unused => self)
+    end associate
+    whole = model%grid%whole()
+    n_bytes = least_node_bytes*whole%size()
+    if (n_bytes <= available_memory()) return
+    call raise(error, err_input, 'the grid has '//to_text(whole%size())//' nodes, whose frames &
+               &would take more than '//to_text(real(n_bytes, wp)/1.0e9_wp, 3)// &
+               ' GB each, more than the memory of this machine', hint='use larger cells: frames &
+               &show the nodes of the whole grid')
+  end subroutine vtk_frames_check
 
   !> Make the folder, see that every file can be written, and ask for velocity gradients.
   subroutine vtk_frames_open(self, model, error)

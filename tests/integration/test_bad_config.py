@@ -289,3 +289,13 @@ def test_grid_too_large_for_the_memory(executable: Path, tmp_path: Path, cells: 
         preexec_fn=limit_memory,
     )
     expect_failure(result, tmp_path, BAD_INPUT, "scene.cfg: ", "memory")
+
+
+def test_node_frames_too_large(mpm3d: Run, tmp_path: Path) -> None:
+    """A grid of 2e9 nodes is refused though its bodies are small: frames show all nodes."""
+    write_scene(tmp_path, CONFIG.replace("{10, 10}", "{46000, 46000}").replace("{1, 1}", "{0, 1}"))
+    small = "1\n1 1e-12 0.5 0.5 0 0 1\n"
+    (tmp_path / "first.points").write_text(small)
+    (tmp_path / "second.points").write_text(small)
+    result = mpm3d("-c", "scene.cfg", "--check", cwd=tmp_path)
+    expect_failure(result, tmp_path, BAD_INPUT, "scene.cfg: ", "nodes, whose frames would take")
