@@ -8,7 +8,7 @@ module mpm_description
   implicit none
   private
   public :: description_t, property_t
-  public :: all_types, types_with_dim, types_with_velocity
+  public :: types_with_dim, types_with_velocity
   public :: kind_integer, kind_real, kind_string
 
   !> A property of the list `properties`.
@@ -17,9 +17,6 @@ module mpm_description
   integer, parameter :: kind_integer = 2
   !> A property of the list `str-properties`.
   integer, parameter :: kind_string = 3
-
-  !> Present in every simulation TYPE.
-  logical, parameter :: all_types(5) = .true.
 
   !> One property of a class.
   type :: property_t

@@ -150,19 +150,23 @@ contains
       end if
       frame = serializer%due(model, t_next)
       call solver%step(model, dt, frame, error)
-      if (allocated(error)) return
+      if (allocated(error)) exit
       model%step = model%step + 1
       model%time = t_next
       model%last_dt = dt
       if (frame) then
         call monitor%check(model, solver)
         call serializer%write_frame(model, error)
-        if (allocated(error)) return
+        if (allocated(error)) exit
         call monitor%frame(model, serializer%frames)
       end if
       call monitor%progress(model, steps, serializer%frames)
     end do
-    call monitor%finish(model, serializer)
+    if (allocated(error)) then
+      call monitor%clear_line()
+    else
+      call monitor%finish(model, serializer)
+    end if
   end subroutine driver_run
 
 end module mpm_driver

@@ -16,8 +16,10 @@ contains
     !> The job, started.
     type(job_t), intent(in) :: job
     character(*), parameter :: kinds(5) = &
-      [character(36) :: 'uniaxial strain', 'plane strain', '3D', 'axisymmetric', &
+      [character(28) :: 'uniaxial strain', 'plane strain', '3D', 'axisymmetric', &
        '2D with out-of-plane motion']
+    character(*), parameter :: shares(5) = &
+      [character(18) :: 'm2 of section', 'm of depth', '', 'radian', 'm of depth']
     type(window_t) :: whole
     real(wp) :: lower(3), upper(3)
     integer(lp) :: steps, memory
@@ -30,6 +32,9 @@ contains
     steps = job%driver%step_count(job%model)
     call line('config:  '//job%config//'   TYPE '//to_text(job%model%kin%sim_type)//' ('// &
               trim(kinds(job%model%kin%sim_type))//')')
+    if (len_trim(shares(job%model%kin%sim_type)) > 0) then
+      call line('units:   mass, force and energy per '//trim(shares(job%model%kin%sim_type)))
+    end if
     call line('grid:    '//sizes(whole%n(:dim) - 1)//' cells, '//to_text(whole%size())// &
               ' nodes, '//box(lower(:dim), upper(:dim)))
     call report_bodies(job)

@@ -21,6 +21,8 @@ module mpm_monitor
   integer, parameter :: verbose = 2
   !> File descriptor of the standard output.
   integer, parameter :: standard_output = 1
+  !> What brings a terminal to the start of its line, and erases the line from there on.
+  character(*), parameter :: start_of_line = achar(13), erase_line = achar(27)//'[K'
   !> Seconds between two progress lines.
   real(wp), parameter :: progress_interval = 0.2_wp
 
@@ -57,6 +59,8 @@ module mpm_monitor
     procedure :: say => monitor_say
     !> Write a warning.
     procedure :: warn => monitor_warn
+    !> Take the progress line off the terminal.
+    procedure :: clear_line => monitor_clear_line
     !> Seconds since the start of the loop.
     procedure, private :: elapsed => monitor_elapsed
   end type monitor_t
@@ -157,10 +161,11 @@ contains
     self%clock_progress = now
     seconds = self%elapsed()
     speed = real(model%step, wp)/seconds
-    write (output_unit, '(a)', advance='no') achar(13)//'t = '//to_text(model%time, 4)//' s   '// &
+    write (output_unit, '(a)', advance='no') start_of_line//'t = '// &
+      to_text(model%time, 4)//' s   '// &
       to_text(int((100*model%step)/steps))//' %   frames '//to_text(frames)//'   '// &
-      to_text(speed, 3)//' steps/s   left '//duration(anint(real(steps - model%step, wp)/speed))// &
-      '      '
+      to_text(speed, 3)//' steps/s   left '// &
+      duration(anint(real(steps - model%step, wp)/speed))//erase_line
     flush (output_unit)
   end subroutine monitor_progress
 
@@ -176,8 +181,7 @@ contains
     real(wp) :: seconds
     integer :: i, lost
 
-    if (self%shows_progress) write (output_unit, '(a)', advance='no') achar(13)//repeat(' ', 78)// &
-      achar(13)
+    call self%clear_line()
     seconds = self%elapsed()
     call measure(model, now)
     call self%say('done: '//counted(model%step, 'step')//' to t = '// &
@@ -219,10 +223,18 @@ contains
     !> What to warn of.
     character(*), intent(in) :: text
 
-    if (self%shows_progress) write (output_unit, '(a)', advance='no') achar(13)
+    call self%clear_line()
     flush (output_unit)
     write (error_unit, '(a)') 'warning: '//text
   end subroutine monitor_warn
+
+  !> Take the progress line off the terminal, so that the next text stands alone.
+  subroutine monitor_clear_line(self)
+    !> The monitor.
+    class(monitor_t), intent(in) :: self
+
+    if (self%shows_progress) write (output_unit, '(a)', advance='no') start_of_line//erase_line
+  end subroutine monitor_clear_line
 
   !> Seconds since the start of the loop.
   function monitor_elapsed(self) result(seconds)
