@@ -108,6 +108,9 @@ contains
       if (allocated(points%gradient)) then
         bits = bits + storage_size(points%gradient, lp)*size(points%gradient, kind=lp)
       end if
+      if (allocated(points%load)) then
+        bits = bits + storage_size(points%load, lp)*size(points%load, kind=lp)
+      end if
       bits = bits + storage_size(points%id, lp)*3_lp*size(points%id, kind=lp)
       bits = bits + storage_size(nodes%mass, lp)* &
              (size(nodes%mass, kind=lp) + size(nodes%momentum, kind=lp) &

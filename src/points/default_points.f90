@@ -315,6 +315,7 @@ contains
     do p = 1, self%n
       vector(:, p) = self%body_force(:self%kin%nvel)
     end do
+    if (allocated(self%load)) vector = vector + self%load
     call writer%vector('body_force', vector)
     call writer%symmetric_tensor('cauchy_stress', self%stress)
     if (allocated(self%gradient)) call writer%gradient_tensor('velocity_gradient', self%gradient)

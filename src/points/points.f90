@@ -57,6 +57,9 @@ module mpm_points
     real(wp), allocatable :: gradient(:, :)
     !> Acceleration by the body force, the same for all points. [m/s2]
     real(wp) :: body_force(3) = 0.0_wp
+    !> Acceleration by a body force that differs from point to point; not allocated when there is
+    !> none. [m/s2] (nvel, n)
+    real(wp), allocatable :: load(:, :)
     !> The basis between points and nodes.
     type(stencil_t) :: stencil
     !> Key of the stencil, or `outside`. (n)
@@ -239,6 +242,7 @@ contains
     call permute_vectors(order, self%velocity)
     call permute_vectors(order, self%stress)
     if (allocated(self%gradient)) call permute_vectors(order, self%gradient)
+    if (allocated(self%load)) call permute_vectors(order, self%load)
   end subroutine points_permute
 
   !> Permute integers.

@@ -89,8 +89,41 @@ contains
       call finish_mapping(points%kin%nvel, window%size(), threads, points%mass_cutoff, &
                           points%body_force, nodes%mass, nodes%momentum, nodes%force, &
                           nodes%velocity, nodes%increment)
+      if (allocated(points%load)) call add_loads(points, window, threads, nodes%force)
     end associate
   end subroutine map_to_nodes
+
+  !> Add the body forces that differ from point to point: f_i += sum_p m_p N_i(x_p) b_p.
+  !!
+  !! The sums are the momenta of points whose velocity is their load. As the uniform body force, and
+  !! unlike internal forces, loads take part in the velocities of negligible nodes: a node's
+  !! acceleration by them is a mean of b_p with the weights m_p N_i(x_p), which is bounded.
+  subroutine add_loads(points, window, threads, force)
+    !> The points, with loads and sorted by cell.
+    class(points_t), intent(in) :: points
+    !> Window of the node arrays; holds all stencils of the points.
+    type(window_t), intent(in) :: window
+    !> Number of threads.
+    integer, intent(in) :: threads
+    !> Nodal forces, added to. [N] (nvel, nn)
+    real(wp), intent(inout) :: force(:, :)
+    real(wp), allocatable :: mass(:), load(:, :), unused(:, :), stress(:, :)
+    integer :: n, nodes, i
+
+    n = points%n_inside
+    nodes = window%size()
+    associate (kin => points%kin)
+      allocate (mass(nodes), load(kin%nvel, nodes), unused(kin%nvel, nodes))
+      allocate (stress(kin%nstress, n), source=0.0_wp)
+      call scatter(kin, points%stencil, window, useful_threads(threads, n), n, points%order(:n), &
+                   points%row_offset, points%key(:n), points%x(:, :n), points%extent(:n), &
+                   points%mass(:n), points%volume(:n), points%load(:, :n), stress, mass, load, &
+                   unused)
+    end associate
+    do i = 1, nodes
+      force(:, i) = force(:, i) + load(:, i)
+    end do
+  end subroutine add_loads
 
   !> Add the body force and form the nodal velocities.
   !!
