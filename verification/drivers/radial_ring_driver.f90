@@ -15,7 +15,8 @@ module mpm_radial_ring_driver
   !> The TYPEs that have the solution, and the one of them in which the centre is free.
   logical, parameter :: solved(5) = [.false., .true., .false., .true., .false.]
   logical, parameter :: plane(5) = [.false., .true., .false., .false., .false.]
-  !> Largest strain u' and u/R: the logarithms of the stretches then differ by less than log 2.
+  !> Largest strain u' and u/R. The logarithms of the stretches then differ by log 2 at most; at 1
+  !! the principal stresses would differ by 2 G and the equations of motion not be elliptic.
   real(wp), parameter :: largest_strain = 1.0_wp/3.0_wp
   !> Half a turn.
   real(wp), parameter :: pi = acos(-1.0_wp)
@@ -84,10 +85,10 @@ contains
                           '    properties = {t_stop = 0.02, amplitude = 0.005, inner = 0.4, '// &
                           'outer = 0.6, density = 1000, E = 1e7}'//nl//'}')
     call add_load_properties(description)
-    call description%add_real('amplitude', 'm', 'largest displacement A of the outer rim', &
-                              above=0.0_wp)
+    call description%add_real('amplitude', 'm', 'largest displacement A of the outer rim; strains &
+                              &reach 1/3 at most', above=0.0_wp)
     call description%add_real('inner', 'm', 'inner radius', above=0.0_wp)
-    call description%add_real('outer', 'm', 'outer radius', above=0.0_wp)
+    call description%add_real('outer', 'm', 'outer radius, below 3 inner', above=0.0_wp)
     call description%add_real('density', 'kg/m3', 'density in the reference configuration', &
                               above=0.0_wp)
     call description%add_real('E', 'Pa', 'Young''s modulus of the material', above=0.0_wp)

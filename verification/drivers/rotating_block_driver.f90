@@ -23,7 +23,7 @@ module mpm_rotating_block_driver
   !!
   !! y_i = X_i + A sin(k X_i)**2 sin(omega t), k = pi/length and X counted from the corner of the
   !! block, is free of rotation: F_ii = 1 + A k sin(2 k X_i) sin(omega t), and with nu = 0 the
-  !! Jaumann rate integrates to the stress E log F_ii. It is 0 on the faces on which axis i stands,
+  !! Jaumann rate integrates to the stress E log F_ii. It is 0 on the faces with the normal i,
   !! which nu /= 0 would spoil. The rotation is rigid, the same for all points, and laid over a
   !! motion without spin: it adds to W alone, so that S = Q diag(E log F_ii) Q^T obeys
   !! dS/dt = W S - S W + E D. (A spin in y would spoil the logarithms; a Q that differs from point

@@ -47,6 +47,8 @@ module mpm_vortex_driver
 
   !> The motion of one circle at one time.
   type :: circle_t
+    !> Whether it belongs to the ring.
+    logical :: turns = .false.
     !> Its radius. [m]
     real(wp) :: radius = 0.0_wp
     !> From the centre to the reference position in the plane. [m]
@@ -93,13 +95,13 @@ contains
     call description%add_real('center_y', 'm', 'centre', default=0.0_wp, types=plane)
     call description%add_note('For TYPE 2, TYPE 3 (about an axis along z, uniform along it) and &
                               &TYPE 4 (about the axis r = 0, uniform along it).')
-    call description%add_note('For IsotropicLinearElasticity. The shear reaches 7.066 A. At pi/2 &
-                              &its modulus G cos k is 0 and the equations of motion are no longer &
-                              &elliptic, whatever waves are looked at: hence the bound of A. In &
-                              &TYPE 2 and 3 ellipticity is lost at pi/3 already, where the &
-                              &principal stresses differ by 2 G, for shear waves along the lower &
-                              &one: convergence can be asked for with A < 0.148.')
-    call description%add_note('The material must fill the ring; what it does elsewhere is to rest.')
+    call description%add_note('For IsotropicLinearElasticity. The shear k reaches 7.066 A. At pi/2 &
+                              &(A = 0.222) its modulus G cos k is 0 and the equations of motion &
+                              &are no longer elliptic: hence the bound of A. In TYPE 2 and 3, &
+                              &where waves also run across the radii, that happens at pi/3 (A = &
+                              &0.148), where the principal stresses differ by 2 G: expect &
+                              &convergence below that only.')
+    call description%add_note('The material must fill the ring. Outside of it nothing moves.')
   end subroutine vortex_driver_describe
 
   !> Set up from the properties.
@@ -139,7 +141,8 @@ contains
     if (kin%sim_type == type_axisymmetric) circle%arm = [reference(1), 0.0_wp]
     circle%radius = norm2(circle%arm)
     s = circle%radius/self%radius - 1.0_wp
-    if (abs(s) >= 0.25_wp) return
+    circle%turns = abs(s) < 0.25_wp
+    if (.not. circle%turns) return
     q = 1.0_wp - 16.0_wp*s**2
     f = q**2
     df = -64.0_wp*s*q/self%radius
@@ -176,7 +179,7 @@ contains
     end associate
     b = 0.0_wp
     circle = self%circle(kin, reference, time)
-    if (abs(circle%radius/self%radius - 1.0_wp) >= 0.25_wp) return
+    if (.not. circle%turns) return
     ratio = self%shear/self%density
     r = circle%radius
     associate (k => circle%shear, dk => circle%shear_gradient)
@@ -207,7 +210,7 @@ contains
     real(wp) :: e(2), p, q
 
     circle = self%circle(kin, reference, time)
-    if (abs(circle%radius/self%radius - 1.0_wp) >= 0.25_wp) return
+    if (.not. circle%turns) return
     p = 2.0_wp*self%shear*sin(0.5_wp*circle%shear)**2
     q = self%shear*sin(circle%shear)
     if (kin%sim_type == type_axisymmetric) then
