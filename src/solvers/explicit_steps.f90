@@ -436,8 +436,9 @@ contains
   !!
   !! A mode of wave number k is stable for c**2 K dt**2 <= 4/(2 - mu). With n points per cell and
   !! direction the hats give K = 4 s/h**2 and mu = 1 - (2/3 + 1/(3 n**2)) s, s = sin**2(k h/2); the
-  !! worst mode is s = 1: c dt/h <= 1/sqrt(5/3 + 1/(3 n**2)). In several dimensions K is at most the
-  !! sum over the directions, hence the safe bound c dt sqrt(sum 1/h_d**2) <= the same number.
+  !! worst mode is s = 1: c dt/h <= 1/sqrt(5/3 + 1/(3 n**2)). In several dimensions K is the sum over
+  !! the directions of K_d times the mu of the others, and mu the product of all. From n = 2 on, and
+  !! with averaged functions, the worst mode runs along one direction, that of the smallest spacing.
   pure subroutine body_stable_step(spacing, body, wave_speed, limit)
     !> Spacing of the grid. [m]
     real(wp), intent(in) :: spacing(3)
@@ -467,16 +468,26 @@ contains
     !> Wave speed times stable step. [m]
     real(wp) :: length
     real(wp) :: per_cell
+    !> One point a cell and hats: its place in the cell counts. The worst is the middle in one
+    !! direction, and on node lines in the others, with mu = 1/2 or 3/4 in the first.
+    real(wp), parameter :: single_point_limit(3) = &
+      [sqrt(0.5_wp), 2.0_wp/3.0_wp, sqrt(0.32_wp)]
+    !> Two points a cell, but for the rounding of volumes and roots.
+    real(wp), parameter :: nearly_two = 2.0_wp - 1.0e-6_wp
     integer :: n, dim
 
     n = body%points%n_inside
     dim = body%points%kin%dim
-    ! Points per cell and direction: the spacing over the side of the mean point.
-    per_cell = (product(spacing(:dim))*real(n, wp)/sum((2.0_wp*body%points%extent(:n))**dim)) &
+    ! Points per cell along the smallest spacing, as the side of the mean point has it.
+    per_cell = minval(spacing(:dim))/(sum((2.0_wp*body%points%extent(:n))**dim)/real(n, wp)) &
                **(1.0_wp/real(dim, wp))
     per_cell = max(1.0_wp, per_cell)
-    length = 1.0_wp/(sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))* &
-                     sqrt(sum(1.0_wp/spacing(:dim)**2)))
+    if (per_cell < nearly_two .and. .not. body%points%stencil%averaged) then
+      length = single_point_limit(dim)
+    else
+      length = 1.0_wp/sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))
+    end if
+    length = length*minval(spacing(:dim))
   end function stable_length
 
 end module mpm_explicit_steps
