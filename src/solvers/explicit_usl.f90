@@ -24,6 +24,8 @@ module mpm_explicit_usl
     procedure :: start => explicit_usl_start
     procedure :: step => explicit_usl_step
     procedure :: stable_step => explicit_usl_stable_step
+    !> Advance the points of a body, their volume and stress, when its nodes are advanced.
+    procedure :: advance_body => explicit_usl_advance_body
   end type explicit_usl_t
 
 contains
@@ -133,10 +135,30 @@ contains
     end do
     do i = 1, size(model%bodies)
       if (.not. model%bodies(i)%body%active) cycle
-      call update_points(model, i, dt, keep_gradient, error)
+      call self%advance_body(model, i, dt, keep_gradient, error)
       if (allocated(error)) return
     end do
   end subroutine explicit_usl_step
+
+  !> Advance the points of a body with the grid, then their stress.
+  subroutine explicit_usl_advance_body(self, model, body, dt, keep_gradient, error)
+    !> The solver.
+    class(explicit_usl_t), intent(inout) :: self
+    !> The model, its nodes advanced.
+    type(model_t), intent(inout) :: model
+    !> Position of the body in the model's list.
+    integer, intent(in) :: body
+    !> Length of the step. [s]
+    real(wp), intent(in) :: dt
+    !> Store the velocity gradients, for a frame.
+    logical, intent(in) :: keep_gradient
+    !> The simulation went bad.
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (unused => self)
+    end associate
+    call update_points(model, body, dt, keep_gradient, error)
+  end subroutine explicit_usl_advance_body
 
   !> Largest stable time step of a body by linear theory.
   pure subroutine explicit_usl_stable_step(self, model, body, wave_speed, limit)
