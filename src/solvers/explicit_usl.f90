@@ -10,7 +10,7 @@ module mpm_explicit_usl
   use mpm_solver, only: solver_t
   implicit none
   private
-  public :: explicit_usl_t
+  public :: explicit_usl_step, explicit_usl_t
 
   !> FLIP with symplectic Euler steps.
   type, extends(solver_t) :: explicit_usl_t
@@ -97,6 +97,8 @@ contains
   end subroutine explicit_usl_start
 
   !> Advance the model by one step.
+  !!
+  !! Public since a class that overrides `step` loses its own type in a call of its parent's.
   subroutine explicit_usl_step(self, model, dt, keep_gradient, error)
     !> The solver.
     class(explicit_usl_t), intent(inout) :: self

@@ -5,7 +5,7 @@ module mpm_explicit_usl_with_volumetric_strain_smoothing
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
   use mpm_explicit_steps, only: advance_stress, bad_stress, raise_bad_point, update_points
-  use mpm_explicit_usl, only: explicit_usl_t
+  use mpm_explicit_usl, only: explicit_usl_step, explicit_usl_t
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t, type_plane_strain
   use mpm_material, only: material_t
@@ -231,7 +231,7 @@ contains
     !> The simulation went bad, or metrics can't be written.
     type(error_t), allocatable, intent(out) :: error
 
-    call self%explicit_usl_t%step(model, dt, keep_gradient, error)
+    call explicit_usl_step(self, model, dt, keep_gradient, error)
     if (allocated(error) .or. len(self%metrics_file) == 0) return
     if (mod(model%step + 1, int(self%stride, lp)) /= 0) return
     call write_volume_metrics(model, model%time + dt, self%metrics_file, self%lines == 0, error)

@@ -104,22 +104,25 @@ contains
     !> Volumes; points outside the cells keep theirs. [m3] (n)
     real(wp), intent(inout) :: volume(n)
     real(wp), allocatable :: total(:), total_reference(:), ratio(:, :), weight(:, :), change(:, :)
+    real(wp), allocatable :: ratio_t(:, :), weight_t(:, :), change_t(:, :)
     integer, allocatable :: cell(:)
     integer :: counts(3), p, i, j
 
     call find_cells(cells, n, x, cell, counts)
     call sum_cells(n, cell, reference, volume, product(counts), total, total_reference)
-    allocate (change(counts(1), counts(2)), source=0.0_wp)
+    allocate (change(counts(1), counts(2)), change_t(counts(2), counts(1)), source=0.0_wp)
     weight = reshape(total_reference, counts(:2))
     ratio = reshape(total, counts(:2))
     where (weight > 0.0_wp) ratio = ratio/weight
     do j = 1, counts(2)
       call add_line_fluxes(counts(1), ratio(:, j), weight(:, j), change(:, j))
     end do
+    ratio_t = transpose(ratio)
+    weight_t = transpose(weight)
     do i = 1, counts(1)
-      call add_line_fluxes(counts(2), ratio(i, :), weight(i, :), change(i, :))
+      call add_line_fluxes(counts(2), ratio_t(:, i), weight_t(:, i), change_t(:, i))
     end do
-    ratio = ratio + change
+    ratio = ratio + change + transpose(change_t)
     do p = 1, n
       if (cell(p) == 0) cycle
       i = mod(cell(p) - 1, counts(1)) + 1
