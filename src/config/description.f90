@@ -252,6 +252,7 @@ contains
     if (present(is_list)) then
       item%is_list = is_list
       item%required = .not. is_list
+      if (is_list) item%default_string = ''
     end if
     if (present(types)) item%types = types
     call append(self%properties, item)

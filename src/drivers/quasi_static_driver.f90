@@ -49,9 +49,8 @@ contains
     call description%init('driver', 'QuasiStaticDriver', &
                           'As UserDefinedGravityDriver, for loads in equilibrium: the body force &
                           &grows slowly, and viscous or kinetic damping takes the motion away.', &
-                          'Cundall, Proc. Symp. Criteria and Assumptions for Numerical Analysis of &
-                          &Dams, Swansea (1976); Sulsky, Chen and Schreyer, CMAME 118 (1994) &
-                          &179-196', &
+                          'Day, The Engineer 219 (1965) 218-221; Barnes, Int. J. Space Structures &
+                          &14 (1999) 89-104', &
                           'driver'//nl//'{'//nl//'    class = "QuasiStaticDriver"'//nl// &
                           '    properties = {1, 0, -9.81, t_ramp = 0.2, viscous = 10}'//nl//'}')
     call add_gravity_properties(description)

@@ -385,7 +385,7 @@ contains
     !> Time step. [s]
     real(wp), intent(in) :: dt
     !> Velocity gradients of the step. [1/s] (ngrad, n)
-    real(wp), intent(in) :: gradient(*)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
     !> Masses. [kg] (n)
     real(wp), intent(in) :: mass(n)
     !> Volumes at the end of the step. [m3] (n)

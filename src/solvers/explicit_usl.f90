@@ -18,6 +18,8 @@ module mpm_explicit_usl
     logical :: averaged = .true.
     !> Contacts use trial momenta that include the forces so far.
     logical :: implicit_contact = .true.
+    !> Velocities advance from the middle of the last step to that of the present one.
+    logical :: staggered = .false.
   contains
     procedure, nopass :: describe => explicit_usl_describe
     procedure :: init => explicit_usl_init
@@ -48,6 +50,9 @@ contains
     call description%add_integer('contact', '1: contacts use trial momenta with all forces so far &
                                  &(implicit); 0: the momenta of the start of the step (explicit)', &
                                  default=1, lower=0, upper=1)
+    call description%add_integer('staggered', '1: velocities advance by (dt + last dt)/2, dt/2 in &
+                                 &the first step, so that they belong to the middle of each step; &
+                                 &0: by dt', default=0, lower=0, upper=1)
     call description%add_note('TYPE 4 carries the inertia of the rotating basis (v_theta^2/r and &
                               &v_r v_theta/r), which mpm_3d lacks; close to the axis 1/r is &
                               &replaced by its limit.')
@@ -70,6 +75,7 @@ contains
 
     self%averaged = properties%integer('cpdi') == 1
     self%implicit_contact = properties%integer('contact') == 1
+    self%staggered = properties%integer('staggered') == 1
   end subroutine explicit_usl_init
 
   !> Choose the basis of each body and map the initial state to the nodes.
@@ -110,8 +116,11 @@ contains
     logical, intent(in) :: keep_gradient
     !> The simulation went bad.
     type(error_t), allocatable, intent(out) :: error
+    real(wp) :: kick
     integer :: i
 
+    kick = dt
+    if (self%staggered) kick = 0.5_wp*(model%last_dt + dt)
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
         if (.not. body%active) cycle
@@ -123,16 +132,16 @@ contains
       end associate
     end do
     do i = 1, size(model%contacts)
-      call model%contacts(i)%contact%apply(model%grid, model%bodies, dt, self%implicit_contact, &
+      call model%contacts(i)%contact%apply(model%grid, model%bodies, kick, self%implicit_contact, &
                                            model%threads)
     end do
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
         if (.not. body%active) cycle
         if (allocated(body%boundary)) then
-          call body%boundary%apply(model%grid, body%points, body%nodes, dt)
+          call body%boundary%apply(model%grid, body%points, body%nodes, kick)
         end if
-        call update_nodes(body%nodes, dt, model%threads)
+        call update_nodes(body%nodes, kick, model%threads)
       end associate
     end do
     do i = 1, size(model%bodies)

@@ -82,17 +82,19 @@ contains
     call description%add_integer('Nx', 'USE_ZHANG_FLUX: cells along x; 0: those of the grid', &
                                  default=0, lower=0, types=plane)
     call description%add_integer('Ny', 'as Nx, along y', default=0, lower=0, types=plane)
+    call description%add_integer('staggered', 'as of ExplicitUSL', default=0, lower=0, upper=1)
     call description%add_string('flags', 'USE_ZHANG_CELLS (default): one mean for each cell; &
                                 &USE_MAST_CELLS: a function of each cell; USE_ZHANG_FLUX (TYPE 2): &
-                                &means that do not oscillate from cell to cell; the last of them &
-                                &counts. ANTI_LOCKING_ONLY: only materials see the smoothed volume. &
-                                &WRITE_ERROR_METRICS: the first string names a file to write', &
+                                &means that do not oscillate from cell to cell; the last of these &
+                                &three counts. ANTI_LOCKING_ONLY: only materials see the smoothed &
+                                &volume. WRITE_ERROR_METRICS: the first string names a file for &
+                                &them', &
                                 is_list=.true.)
     call description%add_note('Materials get the velocity gradient with its trace replaced by the &
-                              &rate of the smoothed volume, d ln V/dt, so that the elastic law does &
-                              &not lock either (mpm_3d: the smoothed volume alone, which laws in &
-                              &rate form do not look at). The difference is shared equally by the &
-                              &diagonal components that the TYPE has.')
+                              &rate of the smoothed volume, d ln V/dt, so that laws in rate form &
+                              &do not lock either (mpm_3d: the smoothed volume alone, which those &
+                              &do not look at). The difference is shared equally by the diagonal &
+                              &components that the TYPE has.')
     call description%add_note('mpm_3d took Nx, Ny as the integers 0, 1 or 2, 3, and the last &
                               &integer as stride; here each has a place of its own, and a name.')
   end subroutine strain_smoothing_describe
@@ -304,7 +306,7 @@ contains
       call smooth_by_cells(cells, n, points%x(:, :n), points%reference_volume(:n), volume)
     case (mast_cells)
       call smooth_by_nodes(cells, n, points%x(:, :n), points%reference_volume(:n), volume)
-    case (zhang_flux)
+    case default
       where (self%n_cells > 0) cells%n(:2) = self%n_cells
       where (self%length > 0.0_wp) upper(:2) = lower(:2) + self%length
       cells%h(:2) = (upper(:2) - lower(:2))/real(cells%n(:2), wp)

@@ -70,7 +70,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(200) :: reason
     real(wp) :: metrics(5)
-    integer :: unit, status, closed
+    integer :: unit, status
 
     call volume_metrics(model, metrics)
     if (is_first) then
@@ -79,14 +79,14 @@ contains
       open (newunit=unit, file=path, action='write', status='old', position='append', &
             iostat=status, iomsg=reason)
     end if
-    if (status == 0) then
-      if (is_first) write (unit, '(a)', iostat=status, iomsg=reason) &
+    if (status == 0 .and. is_first) then
+      write (unit, '(a)', iostat=status, iomsg=reason) &
         '# t, sum H^2, max H/V, kinetic energy, mean y, sqrt(sum v^2 V)'
-      if (status == 0) write (unit, '(*(es24.16e3, :, 1x))', iostat=status, iomsg=reason) &
-        time, metrics
-      close (unit, iostat=closed)
-      status = max(abs(status), abs(closed))
     end if
+    if (status == 0) then
+      write (unit, '(*(es24.16e3, :, 1x))', iostat=status, iomsg=reason) time, metrics
+    end if
+    if (status == 0) close (unit, iostat=status, iomsg=reason)
     if (status == 0) return
     call raise(error, err_io, 'can''t write error metrics to '//path//': '//trim(reason), &
                hint='the first string of ExplicitUSLwithVolumetricStrainSmoothing names the file')
