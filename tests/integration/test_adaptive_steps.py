@@ -24,6 +24,9 @@ from scene import (
     run_scene,
 )
 
+BOX = 'boundary-class = "CartesianBox"\n'
+HUGHES_WINGET = '    material-str-props = {rate = "hughes_winget"}'
+SOLVER = 'solver { class = "ExplicitUSLwithVolumetricStrainSmoothing" }\n'
 #: Two points a cell and direction: c dt <= h/sqrt(dim)/sqrt(1.75).
 COURANT = 1.0 / np.sqrt(1.75)
 
@@ -71,13 +74,15 @@ def test_steps_of_the_stable_length(mpm3d: Run, tmp_path: Path) -> None:
 
 
 def test_same_bits_with_two_threads(mpm3d: Run, tmp_path: Path) -> None:
-    """Steps and damping do not depend on the number of threads."""
+    """Steps, damping and smoothed volumes do not depend on the number of threads."""
     rows = block(2, [0.0, 0.0], [0.5, 0.5], [100, 100])
-    body = Body("block", rows, more='boundary-class = "CartesianBox"')
+    body = Body("block", rows, more=BOX + HUGHES_WINGET)
     section = driver(
         "QuasiStaticDriver", 0.01, [3.0, -GRAVITY], "cfl = 0.5", "viscous = 9", kinetic=1
     )
-    scene = Scene(2, [1.0, 1.0], [100, 100], [body], 0.01, rate=100.0, driver=section)
+    scene = Scene(
+        2, [1.0, 1.0], [100, 100], [body], 0.01, rate=100.0, driver=section, solver=SOLVER
+    )
     states = []
     for threads in (1, 2):
         folder = tmp_path / str(threads)
