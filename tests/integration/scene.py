@@ -145,6 +145,8 @@ class Scene:
     job: str = ""
     #: The section driver, when it is none of the two above.
     driver: str | None = None
+    #: The section solver, when it is not ExplicitUSL with the two flags.
+    solver: str | None = None
 
     def config(self) -> str:
         """Return the text of the config."""
@@ -155,6 +157,12 @@ class Scene:
 {{
     class = "{driver}"
     properties = {{{numbers(reals)}}}
+}}
+"""
+        solver_section = f"""solver
+{{
+    class = "ExplicitUSL"
+    int-properties = {{{self.cpdi}, {self.implicit_contact}}}
 }}
 """
         head = f"""job
@@ -171,12 +179,7 @@ serializer
     int-properties = {{{self.digits}}}
     str-properties = {{"frames", "save", "test"}}
 }}
-{self.driver or driver_section}solver
-{{
-    class = "ExplicitUSL"
-    int-properties = {{{self.cpdi}, {self.implicit_contact}}}
-}}
-grid
+{self.driver or driver_section}{self.solver or solver_section}grid
 {{
     class = "CartesianLinear"
     properties = {{{numbers(self.lengths)}}}
