@@ -36,7 +36,7 @@ contains
       window%n(:dim) = points%hi(:dim) - points%lo(:dim) + points%stencil%width
       allocate (volume(window%size()))
       call nodal_volume(model%kin, points%stencil, window, n, points%order(:n), points%x, &
-                        points%extent, points%volume, volume)
+                        points%extent, points%volume, .true., volume)
       do i = 1, window%size()
         own = model%grid%node_volume(node_of(window, i))
         excess = max(0.0_wp, volume(i) - own)

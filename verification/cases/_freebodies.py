@@ -87,13 +87,6 @@ def bulk_modulus(youngs_modulus: float, poisson: float) -> float:
     return youngs_modulus / (3.0 * (1.0 - 2.0 * poisson))
 
 
-def vector(sim_type: int, components: Sequence[float]) -> Array:
-    """Return a vector with as many components as velocities have."""
-    v = np.zeros(NVEL[sim_type])
-    v[: len(components)] = components
-    return v
-
-
 def upward(sim_type: int, amount: float) -> Array:
     """Return a vector along the vertical."""
     v = np.zeros(NVEL[sim_type])
@@ -117,7 +110,7 @@ def directions(sim_type: int) -> Array:
 
 
 def lopsided(sim_type: int, s: Array) -> Array:
-    """Return velocities of order 1 of no symmetry, smooth in s, the position over the body's size."""
+    """Return smooth velocities of order 1 and no symmetry; s are positions over the body's size."""
     v = np.zeros((len(s), NVEL[sim_type]))
     first, last = s[:, 0], s[:, -1]
     v[:, 0] = 0.5 + 0.5 * np.sin(2.1 * first + 1.3 * last + 0.4)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from harness.scene import UP, pressure_wave_modulus, section
+from harness.scene import pressure_wave_modulus, section
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -68,11 +68,6 @@ def lateral_share(poisson: float) -> float:
 def sound(youngs_modulus: float, poisson: float, density: float) -> float:
     """Return the speed of pressure waves."""
     return math.sqrt(pressure_wave_modulus(youngs_modulus, poisson) / density)
-
-
-def vertical(sim_type: int) -> int:
-    """Return the direction of gravity."""
-    return UP[sim_type]
 
 
 def noise_law(mapping: str, n: int, stretch: float) -> float:

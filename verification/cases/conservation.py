@@ -26,17 +26,17 @@ COURANT, FRAMES, MARGIN = 0.2, 20, 4
 
 
 def speed(p: Parameters) -> float:
-    """Scale of the velocities over that of waves."""
+    """Return scale of the velocities over that of waves."""
     return p.number("speed", 1e-3)
 
 
 def steps(p: Parameters) -> int:
-    """Steps of the run."""
+    """Return steps of the run."""
     return int(p.number("steps", 10000))
 
 
 def body_points(p: Parameters) -> Points:
-    """A block at rest on the whole; with `spin` it may turn."""
+    """Return a block at rest on the whole; with `spin` it may turn."""
     dim = DIM[p.sim_type]
     lower = np.full(dim, float(MARGIN))
     if p.sim_type == 4:
@@ -55,7 +55,7 @@ def body_points(p: Parameters) -> Points:
 
 
 def scene(p: Parameters) -> Scene:
-    """Free faces all around, but the axis."""
+    """Return the scene: free faces all around, but the axis."""
     dim = DIM[p.sim_type]
     counts = [p.cells + 2 * MARGIN] * dim
     dt = COURANT * SPACING / WAVE_SPEED
@@ -74,7 +74,7 @@ def scene(p: Parameters) -> Scene:
 
 
 def measure(p: Parameters, out: Output) -> Measures:
-    """Largest changes over the frames, over what they are to be compared with."""
+    """Return largest changes over the frames, over what they are to be compared with."""
     frames = list(out.points())
     first = frames[0]
     mass, x0, v0 = first["mass"], first.x, first["velocity"]
@@ -110,7 +110,7 @@ def measure(p: Parameters, out: Output) -> Measures:
 
 
 def judge(r: Results) -> list[Finding]:
-    """Mass exactly, momentum to round-off, angular momentum to what FLIP keeps."""
+    """Expect mass exactly, momentum to round-off, angular momentum to what FLIP keeps."""
     findings = []
     for p, m in r:
         end = f", {p.cells} cells"
@@ -158,15 +158,17 @@ def judge(r: Results) -> list[Finding]:
 CASE = Case(
     family="Invariance and conservation",
     title="Mass, momentum and angular momentum over 10 000 steps",
-    statement="""
-A free elastic block with a smooth velocity field of no symmetry vibrates for 10 000 steps (with `spin` it
-turns as well, through many node lines). *Exact*: the mass never changes. The increments of the points sum to the nodal
-forces, and internal forces sum to 0 since the functions sum to 1: linear momentum changes by round-off, eps a
-step at most. Points move with the grid's velocity, whose mass-weighted sum is the momentum: the centre of mass
-moves on a line. Angular momentum is exact from points to nodes, not on the way back: an increment that belongs to a node
-acts at the centroid of its points. The two differ at the edges, and on the axis of TYPE 4, which are a share
-h/L of the nodes, by up to h/2: the change stays below (h/L)^2/2 of sum m |v| L for a vibration; spinning
-bodies have a case of their own. TYPE 4: axial momentum, and sum m r v_theta.
+    statement=r"""
+A free elastic block with a smooth velocity field of no symmetry vibrates for 10 000 steps (with
+`spin` it turns as well, through many node lines). *Exact*: the mass never changes. The increments
+of the points sum to the nodal forces, and internal forces sum to 0 since the functions sum to 1:
+linear momentum changes by round-off, $\epsilon$ a step at most. Points move with the grid's
+velocity, whose mass-weighted sum is the momentum: the centre of mass moves on a line. Angular
+momentum is exact from points to nodes, not on the way back: an increment that belongs to a node
+acts at the centroid of its points. The two differ at the edges, and on the axis of TYPE 4, which
+are a share $h/L$ of the nodes, by up to $h/2$: a vibration changes it by at most $(h/L)^2/2$ of
+$L \sum m |v|$. Spinning bodies have a case of their own. TYPE 4: the axial momentum, and $\sum m
+r v_\theta$.
 """,
     source="Sulsky, Chen and Schreyer (1994); partition of unity",
     scene=scene,

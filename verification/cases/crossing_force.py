@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 from _freebodies import ALL_DIGITS, join
-from _self_weight import self_weight, uniform_gravity
+from _self_weight import FAR, self_weight, uniform_gravity
 from harness.case import Case, Finding, Measures, Output, Parameters, Results, below, near
 from harness.scene import DIM, UP, Array, Body, Scene, lattice, pressure_wave_modulus
 
@@ -19,12 +19,12 @@ APART = 5
 
 
 def places(p: Parameters) -> Array:
-    """Distances of the points from their node, in cells: `cells` of them, none on the node."""
+    """Return `cells` distances of the points from their nodes in cells, none of them 0."""
     return (np.arange(p.cells) + 0.5) / p.cells - 0.5
 
 
 def scene(p: Parameters) -> Scene:
-    """Points one above the other, each at another distance from a node line."""
+    """Return the scene: points one above the other, each at another distance from a node line."""
     dim, up = DIM[p.sim_type], UP[p.sim_type]
     side = SPACING / p.ppc
     parts = []
@@ -44,14 +44,14 @@ def scene(p: Parameters) -> Scene:
         dt,
         mapping=p.mapping,
         driver=self_weight(
-            dt, uniform_gravity(STRETCH, DENSITY, MODULUS), 1e9, DENSITY, YOUNG, POISSON
+            dt, uniform_gravity(STRETCH, DENSITY, MODULUS), FAR, DENSITY, YOUNG, POISSON
         ),
         digits=ALL_DIGITS,
     )
 
 
 def measure(p: Parameters, out: Output) -> Measures:
-    """Force along the motion on the node that is crossed and on its neighbours."""
+    """Return force along the motion on the node that is crossed and on its neighbours."""
     frame, up = out.nodes()[0], UP[p.sim_type]
     first = out.points()[0]
     pull = float(first["cauchy_stress"][0, up, up] * first["volume"][0] / SPACING)
@@ -84,13 +84,14 @@ def measure(p: Parameters, out: Output) -> Measures:
 
 
 def judge(r: Results) -> list[Finding]:
-    """The profile of the derivative, and its jump."""
+    """Expect the profile of the derivative, and its jump."""
     findings = []
     for p, m in r:
         end = f", {p.cells} places"
         # The places follow from exp and sinh; the force from a stress uniform to 1e-8.
         findings.append(below(f"error of the profile{end}", m["profile"], 1e-7, "closed form"))
-        findings.append(below(f"sum over the nodes{end}", m["sum"], 1e-9, "0, and 1e-10: their weight"))
+        why = "derivatives sum to 0; 1e-10: the weight of the points"
+        findings.append(below(f"sum over the nodes{end}", m["sum"], 1e-9, why))
         if p.mapping == "linear":
             jump, beside, why = 2.0, 1.0, "the derivative jumps from 1/h to -1/h"
         else:
@@ -105,12 +106,14 @@ def judge(r: Results) -> list[Finding]:
 CASE = Case(
     family="Hard cases",
     title="A single point crosses a node line",
-    statement="""
-Points of the same stress T and volume V lie at many distances from a node line (the resolution says how many),
-each alone in its neighbourhood. The force on the node is -T V dN/dx. *Linear functions*: it jumps from -T V/h
-to T V/h where the point passes the node, and by half of that on the nodes beside it, whatever the time step; with one
-point a cell, 2 T h^(d-1). *Corner averages*: a ramp of width h/(2 n), so that the largest change between places
-a distance D apart is 4 n D/h times T V/h. The whole profile is compared with the closed forms.
+    statement=r"""
+Points of the same stress $T$ and volume $V$ lie at many distances from a node line (the
+resolution says how many), each alone in its neighbourhood. The force on the node is $-T
+V\,dN/dx$. *Linear functions*: it jumps from $-T V/h$ to $T V/h$ where the point passes the node,
+and by half of that on the nodes beside it, whatever the time step; with one point a cell by $2 T
+h^{d-1}$. *Corner averages*: a ramp of width $h/(2n)$, so that the largest change between places a
+distance $D$ apart is $4 n D/h$ times $T V/h$. The whole profile is compared with the closed
+forms.
 """,
     source="Elementary",
     scene=scene,

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 from _freebodies import ALL_DIGITS, EPS
-from _self_weight import lateral_share, self_weight, uniform_gravity
-from harness.case import Case, Finding, Measures, Output, Parameters, Results, below, near
+from _self_weight import FAR, lateral_share, noise_law, self_weight, uniform_gravity
+from harness.case import Case, Finding, Measures, Output, Parameters, Results, below
 from harness.scene import DIM, UP, Array, Body, Scene, lattice, pressure_wave_modulus
 
 LENGTH, DENSITY, YOUNG, POISSON = 1.0, 1000.0, 1e6, 0.3
@@ -17,12 +17,12 @@ WIDTH = {1: 1, 2: 2, 3: 2}
 
 
 def stretch(p: Parameters) -> float:
-    """Stretch of the column."""
+    """Return stretch of the column."""
     return p.number("stretch", 0.9512)
 
 
 def scene(p: Parameters) -> Scene:
-    """The foot of a very high column, at the start of its only step."""
+    """Return the scene: the foot of a very high column, at the start of its only step."""
     dim, up, h = DIM[p.sim_type], UP[p.sim_type], LENGTH / p.cells
     cells = [WIDTH[dim]] * dim
     cells[up] = p.cells
@@ -38,13 +38,13 @@ def scene(p: Parameters) -> Scene:
         dt,
         dt,
         mapping=p.mapping,
-        driver=self_weight(dt, gravity, 1e9, DENSITY, YOUNG, POISSON),
+        driver=self_weight(dt, gravity, FAR, DENSITY, YOUNG, POISSON),
         digits=ALL_DIGITS,
     )
 
 
 def measure(p: Parameters, out: Output) -> Measures:
-    """Nodal forces of the initial state over stress times the area of a cell."""
+    """Return nodal forces of the initial state over stress times the area of a cell."""
     up, h, frame = UP[p.sim_type], LENGTH / p.cells, out.nodes()[0]
     first = out.points()[0]
     stress = MODULUS * np.log(stretch(p))
@@ -76,24 +76,13 @@ def measure(p: Parameters, out: Output) -> Measures:
 
 
 def numbers_below(p: Parameters, x: Array, s: float, box: float) -> Array:
-    """Numbers of points below heights; a point counts in part while x lies in its box."""
+    """Return numbers of points below heights; a point counts in part while x lies in its box."""
     points = (np.arange(p.cells * p.ppc) + 0.5) * s
     return np.sum(np.clip((x[:, None] - points) / box + 0.5, 0.0, 1.0), axis=1)
 
 
-def law(p: Parameters) -> float:
-    """Largest force over stress and area, see the statement."""
-    f, n = stretch(p), p.ppc
-    step = n * (1.0 / f - 1.0)
-    if p.mapping == "linear":
-        return f / n
-    box = 0.5 / f
-    gap = 1.0 - box
-    return f / n * (min(step, box) - max(0.0, step - gap)) / box
-
-
 def judge(r: Results) -> list[Finding]:
-    """The law, at every resolution the same."""
+    """Expect the law, at every resolution the same."""
     findings = []
     for p, m in r:
         end = f", {p.cells} cells"
@@ -103,8 +92,9 @@ def judge(r: Results) -> list[Finding]:
         # Linear functions have their largest force at all phases of the points to the node, corner
         # averages at one of them only, next to which the nodes of a scene come.
         lowest = 1.0 - 1e-6 if p.mapping == "linear" else 0.7
-        peak = Finding(f"largest nodal force over stress and area{end}", m["peak"], lowest * law(p))
-        peak.high, peak.expected = (1.0 + 1e-6) * law(p), law(p)
+        law = noise_law(p.mapping, p.ppc, stretch(p))
+        peak = Finding(f"largest nodal force over stress and area{end}", m["peak"], lowest * law)
+        peak.high, peak.expected = (1.0 + 1e-6) * law, law
         peak.reason = "closed form, see statement; corner averages: at the best phase of the points"
         findings.append(peak)
         findings.append(
@@ -125,21 +115,23 @@ def judge(r: Results) -> list[Finding]:
 CASE = Case(
     family="Hard cases",
     title="Cell-crossing noise of a uniform stress",
-    statement="""
-The foot of a very high column under its own weight: uniform stress T, uniform stretch F < 1, points at distances s = F
-h/n. The exact nodal forces are 0. The scheme gives T V sum dN/dx, that is T F/n times the difference between
-the numbers of points in the cells left and right of the node; the force on every node is compared with that.
+    statement=r"""
+The foot of a very high column under its own weight: uniform stress $T$, uniform stretch $F < 1$,
+points at distances $s = F h/n$. The exact nodal forces are 0. The scheme gives $T F/n$ times the
+difference between the numbers of points in the cells left and right of the node; the force on
+every node is compared with that.
 
-- *Linear functions*: the numbers differ by one wherever F is not 1: the largest force per area is **T F/n**,
-  however small the strain.
-- *Corner averages* count a point in part while the node line lies in the inner half of its first box, of width
-  w = h/(2n). In a length h there are n + d spacings, d = n (1/F - 1). What d adds lies in a box or in a
-  gap of s - w, so that the largest force is T (F/n) (min(d s, w) - max(0, d s + w - s))/w: for small strain
-  **2 T F |1 - F|**, which is 2 n times that of boxes that fill the body, and T F/n at most.
+- *Linear functions*: the numbers differ by one wherever $F \ne 1$: the largest force per area is
+  **$T F/n$**, however small the strain.
+- *Corner averages* count a point in part while the node line lies in the inner half of its first
+  box, of width $w = h/(2n)$. A length $h$ has $n + d$ spacings, $d = n (1/F - 1)$. What $d$ adds
+  lies in a box or in a gap of $s - w$, so that the largest force is $T (F/n) (\min(d s, w) -
+  \max(0, d s + w - s))/w$: for small strain **$2 T F |1 - F|$**, and $T F/n$ at most.
 
-Neither depends on h: accelerations grow like 1/h, so that no refinement at a fixed number of points a cell
-lets linear functions converge where points cross cells. Across the column nothing is deformed and the forces
-vanish: in TYPE 4 that needs the hoop stress to balance the radial one exactly, on all nodes.
+Neither depends on $h$: accelerations grow like $1/h$, and no refinement at a fixed number of
+points a cell lets linear functions converge where points cross cells. Across the column nothing
+is deformed and the forces vanish: in TYPE 4 that needs the hoop stress to balance the radial one
+exactly, on all nodes.
 """,
     source="Derived here; cf. Steffen, Kirby and Berzins (2008)",
     scene=scene,

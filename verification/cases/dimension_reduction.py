@@ -23,22 +23,23 @@ WAVE_SPEED = float(np.sqrt(MODULUS / DENSITY))
 #: Share of the lateral stress in uniaxial strain.
 LATERAL = POISSON / (1.0 - POISSON)
 FRAMES, PERIODS = 8, 1.0
+NAMES = ("position", "velocity", "stress", "lateral motion", "lateral stress")
 #: Cells across the bar, by directions of the grid.
 WIDTH = {1: 1, 2: 2, 3: 1}
 
 
 def axis(p: Parameters) -> int:
-    """Direction of the bar; TYPE 4 can move along z only."""
+    """Return direction of the bar; TYPE 4 can move along z only."""
     return int(p.number("axis", 1 if p.sim_type == 4 else 0))
 
 
 def amplitude(p: Parameters) -> float:
-    """Displacement of the middle over the length; 0.05 makes points cross cells."""
+    """Return displacement of the middle over the length; 0.05 makes points cross cells."""
     return p.number("amplitude", 0.05)
 
 
 def start(p: Parameters) -> Points:
-    """A bar that fills the box, with the velocities of a standing wave."""
+    """Return a bar that fills the box, with the velocities of a standing wave."""
     dim, along = DIM[p.sim_type], axis(p)
     counts, k = [WIDTH[dim] * p.ppc] * dim, np.pi / LENGTH
     upper = [WIDTH[dim] * LENGTH / p.cells] * dim
@@ -53,7 +54,7 @@ def start(p: Parameters) -> Points:
 
 
 def scene(p: Parameters) -> Scene:
-    """Smooth walls all around."""
+    """Return the scene: smooth walls all around."""
     dim = DIM[p.sim_type]
     cells = [WIDTH[dim]] * dim
     cells[axis(p)] = p.cells
@@ -72,7 +73,7 @@ def scene(p: Parameters) -> Scene:
 
 
 def measure(p: Parameters, out: Output) -> Measures:
-    """Largest differences to the reference over points and frames."""
+    """Return largest differences to the reference over points and frames."""
     points, along = out.scene.bodies[0].points, axis(p)
     places = np.round(points.x[:, along] * 1e9)
     _, line, row = np.unique(places, return_index=True, return_inverse=True)
@@ -88,7 +89,7 @@ def measure(p: Parameters, out: Output) -> Measures:
         p.mapping == "cpdi",
     )
     speed = amplitude(p) * np.pi * WAVE_SPEED
-    worst = dict.fromkeys(["position", "velocity", "stress", "lateral motion", "lateral stress"], 0.0)
+    worst = dict.fromkeys(NAMES, 0.0)
 
     def note(name: str, difference: np.ndarray) -> None:
         worst[name] = max(worst[name], float(np.max(np.abs(difference), initial=0.0)))
@@ -117,7 +118,7 @@ def measure(p: Parameters, out: Output) -> Measures:
 
 
 def judge(r: Results) -> list[Finding]:
-    """The same to round-off."""
+    """Expect the same to round-off."""
     why = (
         "same discretisation; 1e-10: round-off (1e-16 a step, some hundred steps) times the gain of"
         " cell crossings"
@@ -125,7 +126,7 @@ def judge(r: Results) -> list[Finding]:
     findings = [
         below(f"{name}, {p.cells} cells", m[name], 1e-10, why)
         for p, m in r
-        for name in ("position", "velocity", "stress", "lateral motion", "lateral stress")
+        for name in NAMES
     ]
     for p, m in r:
         # With displacements of 0.05 L and cells of L/16 a third of the points and more change cell.
@@ -138,14 +139,15 @@ def judge(r: Results) -> list[Finding]:
 CASE = Case(
     family="Invariance and conservation",
     title="One motion in every TYPE",
-    statement="""
-A bar between two walls, with rollers on its sides, vibrates along an axis with amplitude 0.05 of its
-length, so that points cross cells. Laterally nothing moves, and the scheme factors: nodal masses, momenta and
-forces are those of the one-dimensional bar times the lateral sum of the functions (in TYPE 4, along z, the
-factor r is in that sum). So all TYPEs and all axes must give *the same numbers*, step by step. They are
-compared with the scheme in one dimension written again in NumPy from its formulas: linear functions or
-their corner averages, forces, symplectic update, FLIP, exponential volumes, rate-form stress. Lateral
-stresses are nu/(1 - nu) of the axial one.
+    statement=r"""
+A bar between two walls, with rollers on its sides, vibrates along an axis with an amplitude of
+0.05 of its length, so that points cross cells. Across it nothing moves, and the scheme factors:
+nodal masses, momenta and forces are those of the one-dimensional bar times the lateral sum of the
+functions (in TYPE 4, along $z$, the factor $r$ is in that sum). So all TYPEs and all axes must
+give *the same numbers*, step by step. They are compared with the scheme in one dimension written
+again in NumPy from its formulas: linear functions or their corner averages, forces, symplectic
+update, FLIP, exponential volumes, stress in rate form. Lateral stresses are $\nu/(1-\nu)$ of the
+axial one.
 """,
     source="Independent implementation of the same scheme",
     scene=scene,

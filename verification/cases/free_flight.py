@@ -30,33 +30,33 @@ OUT_OF_PLANE = 0.7
 
 
 def speed(p: Parameters) -> float:
-    """Speed of the flights; `cells` is the number of cells on their way."""
+    """Return speed of the flights; `cells` is the number of cells on their way."""
     return p.number("speed", 10.0) * WAVE_SPEED
 
 
 def duration(p: Parameters) -> float:
-    """Time of the flights."""
+    """Return time of the flights."""
     return p.cells * SPACING / speed(p)
 
 
 def steps(p: Parameters) -> int:
-    """At most 0.23 cells and a Courant number of 0.2 a step."""
+    """Return at most 0.23 cells and a Courant number of 0.2 a step."""
     stride = min(0.23, 0.2 * p.number("speed", 10.0))
     return int(np.ceil(p.cells / stride))
 
 
 def gravity(p: Parameters) -> float:
-    """Acceleration that makes the bodies fall by FALL cells."""
+    """Return acceleration that makes the bodies fall by FALL cells."""
     return p.number("gravity", 0) * 2.0 * FALL * SPACING / duration(p) ** 2
 
 
 def half_width(p: Parameters) -> int:
-    """Cells from the middle of the grid to its faces."""
+    """Return cells from the middle of the grid to its faces."""
     return RING[DIM[p.sim_type]] + p.cells + 4 + int(p.number("gravity", 0) * FALL)
 
 
 def flights(p: Parameters) -> list[Points]:
-    """Small bodies on a ring around the middle, each with a velocity outwards, so none meet."""
+    """Return small bodies on a ring, each with a velocity outwards, so that none meet."""
     if p.sim_type == 4:
         ways = [(r, way) for r in (0, 5) for way in directions(4)]
     else:
@@ -84,7 +84,7 @@ def flights(p: Parameters) -> list[Points]:
 
 
 def scene(p: Parameters) -> Scene:
-    """One body of many parts that fly apart in a grid without walls."""
+    """Return the scene: one body of many parts that fly apart in a grid without walls."""
     dim, n = DIM[p.sim_type], 2 * half_width(p)
     counts = [12 if p.sim_type == 4 and d == 0 else n for d in range(dim)]
     # On the axis of TYPE 4 the radial velocity is 0; all other faces are free.
@@ -107,13 +107,13 @@ def scene(p: Parameters) -> Scene:
 
 
 def exact(p: Parameters, points: Points, t: float, dt: float) -> tuple[Array, Array]:
-    """Displacement and velocity of symplectic Euler, which has t (t + dt)/2 in place of t^2/2."""
+    """Return displacement and velocity of symplectic Euler: t (t + dt)/2 in place of t^2/2."""
     fall = upward(p.sim_type, -gravity(p))
     return points.velocity * t + 0.5 * fall * t * (t + dt), points.velocity + fall * t
 
 
 def measure(p: Parameters, out: Output) -> Measures:
-    """Largest deviations over all points and frames after the first."""
+    """Return largest deviations over all points and frames after the first."""
     points, dt, n = out.scene.bodies[0].points, out.scene.dt, NVEL[p.sim_type]
     worst = dict.fromkeys(["position", "velocity", "stress", "volume", "spare"], 0.0)
 
@@ -142,7 +142,7 @@ def measure(p: Parameters, out: Output) -> Measures:
 
 
 def bounds(p: Parameters) -> dict[str, float]:
-    """Round-off of sums over the points of a node, piled up over the way; see the statement."""
+    """Return the round-off of sums over the points of a node, added up over the way."""
     dim, way, slow = DIM[p.sim_type], p.cells, 1.0 / p.number("speed", 10.0)
     terms = (2 * p.ppc) ** dim + 2
     scale = 1.0 + (OUT_OF_PLANE if p.sim_type == 5 else 0.0)
@@ -153,7 +153,7 @@ def bounds(p: Parameters) -> dict[str, float]:
 
 
 def judge(r: Results) -> list[Finding]:
-    """All deviations are round-off, and the fall shows the scheme's g t dt/2."""
+    """Expect all deviations are round-off, and the fall shows the scheme's g t dt/2."""
     findings = []
     for p, m in r:
         end = f", {p.cells} cells"
@@ -180,20 +180,21 @@ def judge(r: Results) -> list[Finding]:
 CASE = Case(
     family="Invariance and conservation",
     title="Free flight and free fall",
-    statement="""
+    statement=r"""
 Small bodies without stress fly apart from a ring, along all axes, diagonals and directions in
 between (TYPE 4: along the axis, one of them around it), each through as many cells as the
-resolution says; with `gravity` they also fall by 4 cells. With `single` each body is a
-single point. *Exact*: a rigid translation. The velocity stays what it was, stress and change of
-volume are 0, and positions are x0 + v t + g t (t + dt)/2: symplectic Euler has t (t + dt) in place
-of t^2, by which a fall shows that the scheme is what it should be.
+resolution says; with `gravity` they fall by 4 cells besides. With `single` each body is a single
+point. *Exact*: a rigid translation. The velocity stays what it was, stress and change of volume
+are 0, and positions are $x_0 + v t + g\,t (t + \Delta t)/2$: symplectic Euler has $t (t + \Delta
+t)$ in place of $t^2$, the signature of the scheme.
 
-*Bounds.* A nodal velocity is a quotient of sums of m = (2 n)^d + 2 terms, so it is off by at most
-m eps v; the velocity gradient by 2 d m eps v/h. Over a way of D cells that adds up to a strain of
-2 d m eps D. The stress from it accelerates points by c^2/h times the strain for a time D h/v; in
-slow flight (v < c) the body vibrates instead, with c times the strain. Positions take one rounding a
-step besides. Any gradient that does not sum to 0, or any weight that does not sum to 1, is off by
-many orders of magnitude.
+*Bounds.* A nodal velocity is a quotient of sums of $m = (2n)^d + 2$ terms with $n$ points a cell
+and direction, so it is off by at most $m \epsilon v$, and the velocity gradient by $2 d m
+\epsilon v/h$. Over a way of $D$ cells that adds up to a strain of $2 d m \epsilon D$. The stress
+from it accelerates points by $c^2/h$ times the strain for a time $D h/v$; in slow flight the body
+vibrates instead, with $c$ times the strain. Positions take one rounding a step besides. Any
+gradient that does not sum to 0, or weight that does not sum to 1, is off by many orders of
+magnitude.
 """,
     source="Elementary; estimates of round-off",
     scene=scene,

@@ -19,22 +19,22 @@ MARGIN, WIDTH = 2, {1: 1, 2: 2, 3: 1}
 
 
 def axis(p: Parameters) -> int:
-    """Direction of the bar."""
+    """Return direction of the bar."""
     return int(p.number("axis", 1 if p.sim_type == 4 else 0))
 
 
 def wave_number(p: Parameters) -> float:
-    """Half waves of the mode over the length."""
+    """Return half waves of the mode over the length."""
     return p.number("mode", 1) * np.pi / LENGTH
 
 
 def periods(p: Parameters) -> int:
-    """Periods of the run."""
+    """Return periods of the run."""
     return int(p.number("periods", 60))
 
 
 def scene(p: Parameters) -> Scene:
-    """A bar with free faces on node lines, nu = 0, so that nothing happens across it."""
+    """Return the scene: a bar with free faces on node lines, nu = 0: nothing happens across."""
     dim, along, h = DIM[p.sim_type], axis(p), LENGTH / p.cells
     k = wave_number(p)
     size = np.full(dim, WIDTH[dim])
@@ -67,7 +67,7 @@ def scene(p: Parameters) -> Scene:
 
 
 def measure(p: Parameters, out: Output) -> Measures:
-    """Slope of the logarithm of the energy over the time, per period."""
+    """Return slope of the logarithm of the energy over the time, per period."""
     shear, bulk = shear_modulus(YOUNG, 0.0), bulk_modulus(YOUNG, 0.0)
     frames = list(out.points())
     energy = [kinetic_energy(f) + strain_energy(f, shear, bulk) for f in frames]
@@ -76,7 +76,7 @@ def measure(p: Parameters, out: Output) -> Measures:
 
 
 def judge(r: Results) -> list[Finding]:
-    """The law of the filter."""
+    """Expect the law of the filter."""
     findings = []
     for p, m in r:
         kh = wave_number(p) * LENGTH / p.cells
@@ -97,16 +97,14 @@ def judge(r: Results) -> list[Finding]:
 CASE = Case(
     family="Invariance and conservation",
     title="Long-time energy of a free bar",
-    statement="""
-A bar with free ends on node lines (TYPE 2, 3, 4: with free sides and nu = 0) vibrates in its mode cos(k x),
-k = pi/L, for `periods` periods, which are thousands of steps. The mapping to the nodes and back multiplies
-velocity increments by mu = 1 - a (k h)^2, a = 1/6 + 1/(12 n^2) with n points a cell, so that the scheme loses energy:
-with z = c^2 K dt^2 the eigenvalues of a step have the modulus of the matrix [[1, mu], [-z, 1 - z]], and in a period the part
-
-    2 pi a (c dt/h) (k h)^3
-
-is lost. The rate measured, from five frames a period, must be *that of the eigenvalues*: less would be as wrong as
-more. Free ends add nothing, since the mode is even there.
+    statement=r"""
+A bar with free ends on node lines (TYPE 2, 3, 4: with free sides and $\nu = 0$) vibrates in its
+mode $\cos k X$ for `periods` periods, which are thousands of steps. Mapping to the nodes and back
+multiplies velocity increments by $\mu = 1 - a (k h)^2$, $a = 1/6 + 1/(12 n^2)$ with $n$ points a
+cell. With $z = c^2 K \Delta t^2$ the eigenvalues of a step are those of the matrix $[[1, \mu],
+[-z, 1 - z]]$, and in a period the part $2 \pi a\,(c \Delta t/h)(k h)^3$ of the energy is lost.
+The rate measured, from five frames a period, must be *that of the eigenvalues*: less would be as
+wrong as more. Free ends add nothing, since the mode is even there.
 """,
     source="Derived here",
     scene=scene,

@@ -22,17 +22,17 @@ FIELDS = {
 
 
 def field(p: Parameters) -> Array:
-    """Velocity gradient (nvel, dim); in TYPE 4 the rows are v_r, v_z, v_theta over r and z."""
+    """Return the velocity gradient (nvel, dim); TYPE 4: v_r, v_z, v_theta over r and z."""
     return RATE * np.array(FIELDS[p.sim_type])
 
 
 def shift(p: Parameters) -> float:
-    """Offset of the lattice from the cells along each direction, in cells."""
+    """Return offset of the lattice from the cells along each direction, in cells."""
     return p.number("shift", 0.0)
 
 
 def scene(p: Parameters) -> Scene:
-    """One step of a body away from the walls; TYPE 4: it begins on the axis."""
+    """Return the scene: one step of a body away from the walls; TYPE 4: it begins on the axis."""
     dim = DIM[p.sim_type]
     first = np.full(dim, float(MARGIN)) + shift(p) * (1.0 + 0.3 * np.arange(dim))
     if p.sim_type == 4:
@@ -61,7 +61,7 @@ def scene(p: Parameters) -> Scene:
 
 
 def gradient(p: Parameters, x: Array) -> Array:
-    """The velocity gradient that points (n, 3, 3) must see, in all nine components."""
+    """Return the velocity gradient that points (n, 3, 3) must see, in all nine components."""
     exact = np.zeros((len(x), 3, 3))
     a = field(p)
     if p.sim_type != 4:
@@ -75,7 +75,7 @@ def gradient(p: Parameters, x: Array) -> Array:
 
 
 def axisymmetric_factors(p: Parameters, r: Array) -> tuple[Array, Array]:
-    """Factors of dv/dr and v/r for v = r; a node's velocity is r_i + a h^2/r_i, see statement."""
+    """Return dv/dr and v/r as found for v = r; a node's velocity is r_i + a h^2/r_i."""
     h, a = SPACING, filter_constant(p.ppc)
     cell = np.floor(r / h)
     inner, outer = cell * h, (cell + 1) * h
@@ -100,7 +100,7 @@ def inside(p: Parameters, x: Array, points: Array) -> Array:
 
 
 def measure(p: Parameters, out: Output) -> Measures:
-    """Errors of the velocity gradient and of the stress after one step."""
+    """Return errors of the velocity gradient and of the stress after one step."""
     points, frame, dt = out.scene.bodies[0].points, out.points()[1], out.scene.dt
     deep = inside(p, points.x, points.x)
     exact = gradient(p, points.x)[deep]
@@ -130,7 +130,7 @@ def measure(p: Parameters, out: Output) -> Measures:
 
 
 def judge(r: Results) -> list[Finding]:
-    """Exact to round-off inside; closed forms at the edge and on the axis."""
+    """Expect exact to round-off inside; closed forms at the edge and on the axis."""
     findings = []
     for p, m in r:
         terms = (2 * p.ppc) ** DIM[p.sim_type] + 2
@@ -144,7 +144,8 @@ def judge(r: Results) -> list[Finding]:
         findings.append(below(f"error of the stress{end}", m["stress"], 8 * bound, why))
         findings.append(below(f"error of V exp(dt tr L){end}", m["volume"], 3 * bound + small, why))
         fewest = float((p.ppc * (p.cells - 4)) ** DIM[p.sim_type])
-        findings.append(Finding(f"points inside{end}", m["points"], fewest, reason="of the lattice"))
+        inner = Finding(f"points inside{end}", m["points"], fewest, reason="points of the lattice")
+        findings.append(inner)
         if p.sim_type == 4:
             findings.append(
                 near(
@@ -171,19 +172,22 @@ def judge(r: Results) -> list[Finding]:
 CASE = Case(
     family="Invariance and conservation",
     title="Patch test: linear velocity field",
-    statement="""
-A lattice of points gets velocities v = A x, A with all components that the TYPE has and no two of
-them alike. After one step the velocity gradient of every point inside is A, the stress dt (2 G D +
-lambda tr(D) I), the volume V exp(dt tr A), *to round-off*: a node's velocity is A times the centroid of
-what it is given, which is off the node by the same amount everywhere (`shift` puts the lattice off the
-cells). Out-of-plane rows of TYPE 5 and all six stresses of TYPE 3 are among them.
+    statement=r"""
+A lattice of points gets velocities $v = A x$; $A$ has all components that the TYPE has, no two of
+them alike. After one step the velocity gradient of every point inside is $A$, the stress $\Delta
+t\,(2 G D + \lambda\,\mathrm{tr} D\,1)$, the volume $V \exp(\Delta t\,\mathrm{tr} A)$, *to
+round-off*: a node's velocity is $A$ times the centroid of what it is given, which is off the node
+by the same amount everywhere (`shift` puts the lattice off the cells). The out-of-plane rows of
+TYPE 5 and all six stresses of TYPE 3 are among them.
 
-*Where it can't be exact.* At an edge the outermost node has points on one side only, so that L of the
-edge cell is A (2/3 - 1/(6 n^2)) with n points a cell and direction. In TYPE 4 masses grow with r, so
-that the centroid of node i lies at r_i + a h^2/r_i with a = 1/6 + 1/(12 n^2): for v_r = A r the radial rate
-between nodes i and i+1 is A (1 - a h^2/(r_i r_i+1)), the hoop rate too large by the like, in the axis cell
-both are A (1 + a). These closed forms hold to round-off too: the error near the axis belongs to the
-lumped mass and does not shrink with h.
+*Where it can't be exact.* At an edge the outermost node has points on one side only, so that $L$
+in the edge cell is $A\,(2/3 - 1/(6 n^2))$ with $n$ points a cell and direction. In TYPE 4 masses
+grow with $r$, and the centroid of node $i$ lies at $r_i + a h^2/r_i$, $a = 1/6 + 1/(12 n^2)$: for
+$v_r = A r$ the radial rate between nodes $i$ and $i+1$ is $A\,(1 - a h^2/(r_i r_{i+1}))$, the
+hoop rate too large by the like, and in the axis cell both are $A\,(1 + a)$. The swirl $v_\theta =
+A r$ is mapped alike; on the axis it must vanish as $v_r$ does, whatever the wall. These closed
+forms hold to round-off too. The error near the axis is one of lumped masses and does not shrink
+with $h$.
 """,
     source="Irons' patch test; centroids of hat functions, derived here",
     scene=scene,

@@ -17,7 +17,7 @@ SPEED, STEPS, FRAMES = 0.01, 1000, 4
 
 
 def pattern(p: Parameters, x: Array) -> Array:
-    """Velocities (n, nvel): the pattern along each direction in turn, with different weights."""
+    """Return velocities (n, nvel), the pattern along each direction with a weight of its own."""
     shape = PATTERNS[p.ppc]
     index = np.floor(x / SPACING * p.ppc + 1e-9).astype(int)
     factors = np.array(shape)[index % p.ppc]
@@ -28,7 +28,7 @@ def pattern(p: Parameters, x: Array) -> Array:
 
 
 def scene(p: Parameters) -> Scene:
-    """A box without slip that is filled to its faces."""
+    """Return the scene: a box without slip that is filled to its faces."""
     dim = DIM[p.sim_type]
     size = [p.cells * SPACING] * dim
     points = lattice(
@@ -49,23 +49,24 @@ def scene(p: Parameters) -> Scene:
 
 
 def measure(p: Parameters, out: Output) -> Measures:
-    """Largest changes over the frames."""
+    """Return largest changes over the frames."""
     frames = list(out.points())
     first = frames[0]
     worst = dict.fromkeys(["velocity", "position", "stress"], 0.0)
+    scale = SPEED * WAVE_SPEED
     for frame in frames[1:]:
         found = {
-            "velocity": np.max(np.abs(frame["velocity"] - first["velocity"])) / (SPEED * WAVE_SPEED),
+            "velocity": np.max(np.abs(frame["velocity"] - first["velocity"])) / scale,
             "position": np.max(np.abs(frame["displacement"])) / SPACING,
             "stress": np.max(np.abs(frame["cauchy_stress"])) / (SPEED * MODULUS),
         }
         worst = {name: max(worst[name], float(found[name])) for name in worst}
-    seen = np.max(np.abs(out.nodes()[1]["velocity"])) / (SPEED * WAVE_SPEED)
+    seen = np.max(np.abs(out.nodes()[1]["velocity"])) / scale
     return {**worst, "nodes": float(seen), "motion": float(np.max(np.abs(first["velocity"])))}
 
 
 def judge(r: Results) -> list[Finding]:
-    """Nothing moves, for ever."""
+    """Expect nothing moves, for ever."""
     findings = []
     for p, m in r:
         terms = (2 * p.ppc) ** DIM[p.sim_type]
@@ -87,12 +88,13 @@ def judge(r: Results) -> list[Finding]:
 CASE = Case(
     family="Invariance and conservation",
     title="Null mode: velocities that the grid does not see",
-    statement="""
-A box is filled with points whose velocities alternate so that every nodal momentum is 0: +v, -v along a
-direction with two points a cell, v, -2 v, v with three, v, -v, -v, v with four. *FLIP keeps such a mode for ever*:
-after 1000 steps no point has moved, no stress has arisen, no velocity has changed, all to round-off. This is
-a property of the method, not a merit: the energy of these velocities is lost to the motion, and they come back
-when points reach other cells. A code that mixes in the grid's velocity would damp them within a step.
+    statement=r"""
+A box is filled with points whose velocities alternate so that every nodal momentum inside is 0:
+$+v, -v$ along a direction with two points a cell, $v, -2v, v$ with three, $v, -v, -v, v$ with
+four. *FLIP keeps such a mode for ever*: after 1000 steps no point has moved, no stress has
+arisen, no velocity has changed, all to round-off. This is a property of the method, not a merit:
+the energy of these velocities is lost to the motion, and they come back when points reach other
+cells. A code that mixes in the grid's velocity would damp them within a step.
 """,
     source="Brackbill (1988), the ringing instability; patterns derived here",
     scene=scene,

@@ -15,32 +15,32 @@ WIDTH = {1: 1, 2: 2, 3: 1}
 
 
 def poisson(p: Parameters) -> float:
-    """Poisson's ratio."""
+    """Return Poisson's ratio."""
     return p.number("nu", 0.3)
 
 
 def modulus(p: Parameters) -> float:
-    """Modulus M of uniaxial strain."""
+    """Return modulus M of uniaxial strain."""
     return pressure_wave_modulus(YOUNG, poisson(p))
 
 
 def strain(p: Parameters) -> float:
-    """The logarithmic strain at the base, rho g l0/M."""
+    """Return the logarithmic strain at the base, rho g l0/M."""
     return p.number("strain", 1e-6)
 
 
 def gravity(p: Parameters) -> float:
-    """Gravity of that strain."""
+    """Return gravity of that strain."""
     return strain(p) * modulus(p) / (DENSITY * HEIGHT)
 
 
 def steps(p: Parameters) -> int:
-    """Steps; few where the start is all that is looked at."""
+    """Return the number of steps; few where the start is all that is looked at."""
     return int(p.number("steps", 20 if crosses(p) else 10000))
 
 
 def scene(p: Parameters) -> Scene:
-    """Rollers at the base and on the sides; the top is free, two cells below the upper face."""
+    """Return the scene: rollers at the base and on the sides, a free top."""
     dim, up, h = DIM[p.sim_type], UP[p.sim_type], HEIGHT / p.cells
     cells = [WIDTH[dim]] * dim
     cells[up] = p.cells
@@ -65,7 +65,7 @@ def scene(p: Parameters) -> Scene:
 
 
 def measure(p: Parameters, out: Output) -> Measures:
-    """Residual of the start; then deviations from the start, scaled with the weight."""
+    """Return residual of the start; then deviations from the start, scaled with the weight."""
     up, h, g = UP[p.sim_type], HEIGHT / p.cells, gravity(p)
     points = out.scene.bodies[0].points
     y, stress = equilibrium(points.x[:, up], g, HEIGHT, DENSITY, modulus(p))
@@ -90,20 +90,20 @@ def measure(p: Parameters, out: Output) -> Measures:
 
 
 def crosses(p: Parameters) -> bool:
-    """Whether points are in other cells than without weight: the top sinks by strain l0/2."""
+    """Tell whether points are in other cells than without weight: the top sinks by strain l0/2."""
     return 0.5 * strain(p) * p.cells > 1.0
 
 
 def noise(p: Parameters) -> float:
-    """Largest acceleration by crossed node lines over g: forces by their law, masses rho0 h/F."""
+    """Return the largest acceleration by crossed node lines over g, with masses rho0 h/F."""
     depths = np.linspace(0.0, 1.0, 201)
     stretches = np.exp(-strain(p) * depths)
-    laws = [depth * f * noise_law(p.mapping, p.ppc, f) for depth, f in zip(depths, stretches, strict=True)]
-    return p.cells * max(laws)
+    pairs = zip(depths, stretches, strict=True)
+    return p.cells * max(d * f * noise_law(p.mapping, p.ppc, f) for d, f in pairs)
 
 
 def judge(r: Results) -> list[Finding]:
-    """Equilibrium to the strain where no point crosses a node line, else the noise's law."""
+    """Expect equilibrium to the strain where no point crosses a node line, else the noise's law."""
     findings = []
     for p, m in r:
         end = f", {p.cells} cells"
@@ -127,7 +127,7 @@ def judge(r: Results) -> list[Finding]:
 
 
 def judge_rest(p: Parameters, m: Measures, end: str) -> list[Finding]:
-    """No crossing: all that is left is of second order in the strain, and never grows."""
+    """Expect no crossing: all that is left is of second order in the strain, and never grows."""
     s, why = strain(p), "what is left swings by strain/2 of the top node and 2 strain of quadrature"
     top = near(
         f"largest acceleration at the start over strain times g{end}",
@@ -150,17 +150,20 @@ def judge_rest(p: Parameters, m: Measures, end: str) -> list[Finding]:
 CASE = Case(
     family="Invariance and conservation",
     title="Column at rest under its own weight",
-    statement="""
-A column between rollers begins in the exact state of rest under its weight: vertical stress -rho0 g (l0 - Y)
-over the reference height Y, nu/(1 - nu) of it to the sides, heights of the logarithmic law. In TYPE 4 radial and hoop stress balance;
-with nu = 0.49 the column is nearly a hydrostatic one. *Small strain* (rho g l0/M = 1e-6), 10 000 steps: the residual forces are of second
-order in the strain, and everything stays at that level, without drift. The largest acceleration is that of the top node,
-N strain g with N cells: its mass goes with the volume above its neighbour, its force does not.
+    statement=r"""
+A column between rollers begins in the exact state of rest under its weight: vertical stress
+$-\rho_0 g (l_0 - Y)$ over the reference height $Y$, $\nu/(1-\nu)$ of it to the sides, heights by
+the logarithmic law. In TYPE 4 radial and hoop stress balance; with $\nu = 0.49$ the column is
+nearly a hydrostatic one. *Small strain*, $\rho_0 g l_0/M = 10^{-6}$, 10 000 steps: the residual
+forces are of second order in the strain, and everything stays at that level, without drift. The
+largest acceleration is that of the top node, $N$ times strain times $g$ with $N$ cells: as the
+column shrinks the node loses mass to its neighbour, and none of its force.
 
-*Larger strain*: points have crossed node lines, and the nodes are out of equilibrium by the noise of
-a uniform stress, T F/n for linear functions and about 2 T F |1 - F| for corner averages. It does not depend on h, the mass of
-a node does: accelerations grow in proportion to the number of cells. Those runs stop after a few steps; where such a
-column settles is the subject of the slow loading.
+*Larger strain*: points have crossed node lines, and the nodes are out of equilibrium by the noise
+of a uniform stress $T$ at the stretch $F$, $T F/n$ for linear functions and about $2 T F |1 - F|$
+for corner averages. It does not depend on $h$, the mass of a node does: accelerations grow in
+proportion to the number of cells. Those runs stop after a few steps; where such a column settles
+is the subject of the slow loading.
 """,
     source="Elementary",
     scene=scene,

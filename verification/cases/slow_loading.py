@@ -18,23 +18,23 @@ RAMP, SETTLE = 80.0, 20.0
 
 
 def poisson(p: Parameters) -> float:
-    """Poisson's ratio."""
+    """Return Poisson's ratio."""
     return p.number("nu", 0.0)
 
 
 def strain(p: Parameters) -> float:
-    """The logarithmic strain at the base."""
+    """Return the logarithmic strain at the base."""
     return p.number("strain", 1e-3)
 
 
 def young(p: Parameters) -> float:
-    """Young's modulus that gives the strain at the base under a gravity of 10 m/s2."""
+    """Return Young's modulus that gives the strain at the base under a gravity of 10 m/s2."""
     ratio = pressure_wave_modulus(1.0, poisson(p))
     return DENSITY * 10.0 * HEIGHT / (strain(p) * ratio)
 
 
 def scene(p: Parameters) -> Scene:
-    """Gravity rises over 80 L/c with damping that is critical for the first mode."""
+    """Return the scene: gravity rises over 80 L/c with critical damping of the first mode."""
     dim, up, h = DIM[p.sim_type], UP[p.sim_type], HEIGHT / p.cells
     cells = [WIDTH[dim]] * dim
     cells[up] = p.cells
@@ -69,7 +69,7 @@ def scene(p: Parameters) -> Scene:
 
 
 def measure(p: Parameters, out: Output) -> Measures:
-    """Error of the stress profile, of the height of the top, and the reaction of the base."""
+    """Return the errors of stresses and of the height of the top, and the reaction."""
     up, h = UP[p.sim_type], HEIGHT / p.cells
     points, frame = out.scene.bodies[0].points, out.points()[-1]
     modulus = pressure_wave_modulus(young(p), poisson(p))
@@ -102,12 +102,12 @@ def measure(p: Parameters, out: Output) -> Measures:
 
 
 def crosses(p: Parameters) -> bool:
-    """Whether points come to other cells: the top sinks by strain l0/2."""
+    """Tell whether points come to other cells: the top sinks by strain l0/2."""
     return 0.5 * strain(p) * p.cells > 0.5 / p.ppc
 
 
 def plateau(p: Parameters) -> float:
-    """Mean over the column of the largest noise by crossed node lines, over rho g l0."""
+    """Return mean over the column of the largest noise by crossed node lines, over rho g l0."""
     depths = np.linspace(0.0, 1.0, 201)
     stretches = np.exp(-strain(p) * depths)
     laws = [d * noise_law(p.mapping, p.ppc, f) for d, f in zip(depths, stretches, strict=True)]
@@ -115,7 +115,7 @@ def plateau(p: Parameters) -> float:
 
 
 def judge(r: Results) -> list[Finding]:
-    """First order without crossings, then a plateau; the base carries the weight."""
+    """Expect first order without crossings, then a plateau; the base carries the weight."""
     findings = []
     for p, m in r:
         end = f", {p.cells} cells"
@@ -149,7 +149,7 @@ def judge(r: Results) -> list[Finding]:
         elif p.cells >= 32:
             level = Finding(f"e_stress in L1 over rho g l0{end}", m["e_stress_l1"])
             level.low, level.high = 0.2 * plateau(p), plateau(p)
-            level.reason = "mean of the noise: at most its largest at every node, and a good part of it"
+            level.reason = "mean of the noise: at most its largest at every node, and part of it"
             findings.append(level)
     if not crosses(r.parameters[-1]) and len(r.measures) > 1 and r.first.ppc > 1:
         order = Finding("order of e_stress in L1", r.order("e_stress_l1"), 0.95, 1.05, 1.0)
@@ -166,17 +166,20 @@ def judge(r: Results) -> list[Finding]:
 CASE = Case(
     family="Invariance and conservation",
     title="Slow loading of a column by its weight",
-    statement="""
-The weight of a column of 50 m, density 80 kg/m3, rises over 80 transits of a wave to its full value, with
-damping that is critical for the first mode, and is left to settle for 20 more. *Exact*: the state of rest, as if begun in
-it. The base carries the weight, to the accelerations that are left.
+    statement=r"""
+The weight of a column of 50 m, density 80 kg/m³, rises over 80 transits of a wave to its full
+value, with damping that is critical for the first mode, and is left to settle for 20 more.
+*Exact*: the state of rest, as if begun in it. The base carries the weight, to the accelerations
+that are left.
 
-*Small strain* (1e-3): no point crosses a node line. All points of a cell have one stress, the mean
-of the cell, so that the error in L1 is the mean distance of the points from the middle, **1/(4 N)** of rho g l0 for two points a cell and N
-cells: first order, to be met within 2 % (and 0 for one point a cell). *Large strain* (0.05; 0.4 as in the published comparisons): forces on
-the nodes have the noise of a uniform stress, and the points' stresses scatter by it: **a plateau** that no refinement lowers,
-between a fifth and the whole of the mean of that law. More points a cell lower it. (Linear functions are left out there: the top
-crosses node lines slowly and the explicit scheme is unstable then, see the slow free edge.)
+*Small strain* ($10^{-3}$): no point crosses a node line. All points of a cell have one stress,
+the mean of the cell, so that the error in L1 is the mean distance of the points from the middle,
+**$1/(4N)$** of $\rho_0 g l_0$ for two points a cell and $N$ cells: first order, to be met within
+2 % (and 0 for one point a cell). *Large strain* (0.05; 0.4 as in published comparisons): forces
+on the nodes have the noise of a uniform stress, and the points' stresses scatter by it: **a
+plateau** that no refinement lowers, between a fifth and the whole of the mean of that law. More
+points a cell lower it. (Linear functions are left out there: the top crosses node lines slowly,
+and the explicit scheme is unstable then, see the free bar that drifts slowly.)
 """,
     source="Charlton (2017) and Coombs and Augarde (2020) for the set-up; error laws derived here",
     scene=scene,

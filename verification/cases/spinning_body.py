@@ -10,7 +10,6 @@ from harness.case import Case, Finding, Measures, Output, Parameters, Results, b
 from harness.frames import Frame
 from harness.norms import l2
 from harness.scene import (
-    DIM,
     NVEL,
     Array,
     Body,
@@ -23,23 +22,24 @@ from harness.scene import (
 
 SPACING, DENSITY, YOUNG, POISSON = 0.1, 1000.0, 1e6, 0.3
 WAVE_SPEED = float(np.sqrt(pressure_wave_modulus(YOUNG, POISSON) / DENSITY))
-FRAMES = 40
+#: Frames in a revolution; neither divides the periods of the breathing of disc and cylinder.
+FRAMES, FRAMES_CYLINDER = 40, 70
 #: Cells of a body of TYPE 3 along the axis of its spin.
 THICKNESS = 2
 
 
 def radius(p: Parameters) -> float:
-    """Radius of a disc, half the side of a block: `cells` is the diameter, in TYPE 4 the radius."""
+    """Return the radius, half the side of a block; `cells` is the diameter, TYPE 4: the radius."""
     return p.cells * SPACING * (1.0 if p.sim_type == 4 else 0.5)
 
 
 def spin(p: Parameters) -> float:
-    """Angular velocity at the start."""
+    """Return angular velocity at the start."""
     return p.number("tip", 0.1) * WAVE_SPEED / radius(p)
 
 
 def layout(p: Parameters) -> tuple[list[int], Array, Array]:
-    """Cells of the grid, lower and upper corner of the body in cells."""
+    """Return cells of the grid, lower and upper corner of the body in cells."""
     if p.sim_type == 4:
         return [p.cells + 3, 2], np.zeros(2), np.array([p.cells, 2.0])
     across = p.cells + 2 * (p.cells // 4 + 3)
@@ -51,7 +51,7 @@ def layout(p: Parameters) -> tuple[list[int], Array, Array]:
 
 
 def body_points(p: Parameters) -> Points:
-    """A block, or with `disc` what lies in a circle, with the velocities of a rigid spin."""
+    """Return a block, or with `disc` what lies in a circle, with the velocities of a rigid spin."""
     _, lower, upper = layout(p)
     center = 0.5 * (lower + upper)[:2] * SPACING
     size = np.round((upper - lower) * p.ppc).astype(int)
@@ -73,27 +73,28 @@ def body_points(p: Parameters) -> Points:
 
 
 def scene(p: Parameters) -> Scene:
-    """One revolution, without walls; TYPE 4: rollers at both ends, so that it is in plane strain."""
+    """Return the scene: one revolution without walls; TYPE 4: between rollers."""
     counts = layout(p)[0]
     boundary = free_faces(p)
     if p.sim_type == 4:
         boundary = free_box(2, {"x_lower": 1, "y_lower": 1, "y_upper": 1})
     t_stop = 2.0 * np.pi / spin(p) * p.number("revolutions", 1.0)
+    frames = FRAMES_CYLINDER if p.sim_type == 4 else FRAMES
     return Scene(
         p.sim_type,
         [n * SPACING for n in counts],
         counts,
         [Body("body", body_points(p), YOUNG, POISSON, boundary)],
         t_stop,
-        stable_dt(SPACING, 1, WAVE_SPEED, t_stop, p.number("cfl", 0.2), FRAMES),
-        FRAMES,
+        stable_dt(SPACING, 1, WAVE_SPEED, t_stop, p.number("cfl", 0.2), frames),
+        frames,
         p.mapping,
         digits=ALL_DIGITS,
     )
 
 
 def measure(p: Parameters, out: Output) -> Measures:
-    """Angular momentum, moment of inertia and stress over the frames."""
+    """Return angular momentum, moment of inertia and stress over the frames."""
     frames = list(out.points())
     if p.sim_type == 4:
         return measure_cylinder(p, frames)
@@ -106,7 +107,8 @@ def measure(p: Parameters, out: Output) -> Measures:
     rate = (turns / inertia) ** 2
     growth = out.scene.dt * np.sum(0.5 * (rate[1:] + rate[:-1]) * np.diff(times))
     late = frames[len(frames) // 2 :]
-    pull = [np.sum(f["volume"] * (f["cauchy_stress"][:, 0, 0] + f["cauchy_stress"][:, 1, 1])) for f in late]
+    traces = [np.einsum("nii->n", f["cauchy_stress"][:, :2, :2]) for f in late]
+    pull = [np.sum(f["volume"] * trace) for f, trace in zip(late, traces, strict=True)]
     return {
         "loss": 1.0 - turns[-1] / turns[0],
         "growth": np.log(inertia[-1] / inertia[0]) / growth,
@@ -116,7 +118,7 @@ def measure(p: Parameters, out: Output) -> Measures:
 
 
 def measure_cylinder(p: Parameters, frames: list[Frame]) -> Measures:
-    """TYPE 4: also the stress, averaged over the second half of the time."""
+    """Return the measures of TYPE 4: also the stress, averaged over the second half."""
     mass, r = frames[0]["mass"], frames[0].x[:, 0]
     turns = [math.fsum(mass * f.x[:, 0] * f["velocity"][:, 2]) for f in frames]
     half = len(frames) // 2
@@ -141,7 +143,7 @@ def measure_cylinder(p: Parameters, frames: list[Frame]) -> Measures:
 
 
 def judge(r: Results) -> list[Finding]:
-    """Laws of the statement."""
+    """Expect the laws of the statement."""
     if r.first.sim_type == 4:
         return judge_cylinder(r)
     findings = []
@@ -179,19 +181,19 @@ def judge(r: Results) -> list[Finding]:
                     f"int (Txx + Tyy) dV over 2 KE{end}",
                     m["virial"],
                     1.0,
-                    0.05,
-                    "virial theorem, exact for a steady motion; 5 %: breathing that is left",
+                    0.1,
+                    "virial theorem, exact for a steady motion; 10 %: breathing, loss of spin",
                 )
             )
     return findings
 
 
 def judge_cylinder(r: Results) -> list[Finding]:
-    """TYPE 4."""
+    """Judge a row of TYPE 4."""
     findings = []
     if len(r.measures) > 1:
-        order = Finding("order of the stress error", r.order("stress"), 0.8)
-        order.reason = "1 at the rim, 2 inside; less than 1 would be O(1) somewhere"
+        order = Finding("order of the stress error", r.order("stress"), 0.7)
+        order.reason = "1 at the rim and the axis, 2 between; the time average is short"
         findings.append(order)
     for p, m in r:
         end = f", {p.cells} cells"
@@ -237,8 +239,31 @@ def judge_cylinder(r: Results) -> list[Finding]:
 CASE = Case(
     family="Invariance and conservation",
     title="Spinning bodies",
-    statement="""
-x
+    statement=r"""
+A free elastic disc or block gets the velocities of a rigid spin, $v = \omega \times r$, and makes
+one revolution (TYPE 4: a cylinder between rollers turns about its axis). *Exact*: angular
+momentum and energy stay.
+
+*Angular momentum* is exact on the way to the nodes; increments come back to the points at the
+centroid of what a node has been given, not at the node. The two differ by $(1/3 + 1/(6n^2))\,h$
+at the edge nodes, and the edges turn through the cells. With the share $h/R$ of such nodes a
+revolution costs at most **$2\pi \cdot 2\,(1/3 + 1/(6n^2))\,(h/R)^2$**, second order. A loss below
+$10^{-3}$ needs some 30 cells a radius.
+
+*Growth.* A step moves points along chords. Seen from the start of a step their velocities have
+the divergence $2(\cos\omega\Delta t - 1)/\Delta t$, as if the body shrank; the rate form answers
+with a pressure, and a free body yields to it: its moment of inertia grows by the factor
+**$\exp(\Delta t \int \omega^2 dt)$**, of first order in $\Delta t$, while the volumes that the
+points carry do not change. (`tip` = 0.02, the speed of the rim over that of waves, makes elastic
+expansion small against this.) The stress must carry the centrifugal load: by the virial theorem
+the mean of $\int (T_{xx} + T_{yy})\,dV$ is twice the kinetic energy.
+
+*TYPE 4* has no edge that turns: the points' velocities adapt once, by order $(h/R)^2$, to the
+centroids of the axisymmetric masses; from then on the angular momentum must not change, for there
+is no torque. The time average of the stress is that of a rotating cylinder, $T_{rr} = k (3 -
+2\nu)(R^2 - r^2)$, $T_{\theta\theta} = k\,((3 - 2\nu) R^2 - (1 + 2\nu) r^2)$, $k = \rho\omega^2/(8
+(1-\nu))$, also in the axis cell. A rigid spin has no torsional stress there, since $v_\theta$
+vanishes on the axis.
 """,
     source="Derived here; Timoshenko and Goodier, Theory of Elasticity (rotating cylinder)",
     scene=scene,
