@@ -11,9 +11,9 @@ contains
 
   !> Move points with the grid, add the velocity increments and stretch the volumes.
   !!
-  !! x += dt v_grid, u += dt v_grid, v += dv (FLIP), V *= exp(dt tr L). In TYPE 4 the velocity is
-  !! turned with the local basis by the angle dt v_theta / r, which carries the centrifugal and
-  !! Coriolis terms of the cylindrical components.
+  !! x += dt v_grid, u += dt v_grid, v += dv (FLIP), V *= exp(dt tr L). In TYPE 4 the velocity
+  !! goes over to the local basis of the moved point, which carries the centrifugal and Coriolis
+  !! terms of the cylindrical components.
   pure subroutine advance_points(kin, stencil, n, dt, grid_velocity, increment, gradient, x, &
                                  displacement, velocity, volume, first_bad)
     !> Component counts.
@@ -48,7 +48,8 @@ contains
     call exponential(n, trace, stretch)
     call add_scaled(kin%nvel*n, 1.0_wp, increment, velocity)
     if (kin%sim_type == type_axisymmetric) then
-      call turn_basis(n, dt, axis_fraction*stencil%h(1), x, velocity)
+      call turn_basis(n, dt, axis_fraction*stencil%h(1), x, grid_velocity, &
+                      velocity)
     end if
     call add_scaled(kin%nvel*n, dt, grid_velocity, displacement)
     if (kin%dim == kin%nvel) then
@@ -125,27 +126,36 @@ contains
   end subroutine find_bad
 
   !> Express velocities in the local cylindrical basis of the moved points.
-  pure subroutine turn_basis(n, dt, r_floor, x, velocity)
+  !!
+  !! v_r gains the centrifugal part by a turn of the basis, which is bounded; v_theta changes so
+  !! that the angular momentum r v_theta stays. A turn of both would lose (dt v_theta/r)**2/2 of it
+  !! in a step, since the grid moves r as if the path were not curved.
+  pure subroutine turn_basis(n, dt, r_floor, x, grid_velocity, velocity)
     !> Number of points.
     integer, intent(in) :: n
     !> Time step. [s]
     real(wp), intent(in) :: dt
-    !> Smallest radius in the quotient v_theta / r. [m]
+    !> Smallest radius that divides. [m]
     real(wp), intent(in) :: r_floor
     !> Positions r, z before the move. [m] (2, n)
     real(wp), intent(in) :: x(2, n)
+    !> Velocities of the grid r, z, theta, by which the points move. [m/s] (3, n)
+    real(wp), intent(in) :: grid_velocity(3, n)
     !> Velocities r, z, theta. [m/s] (3, n)
     real(wp), intent(inout) :: velocity(3, n)
-    real(wp) :: angle, v_r, v_t
+    !> Largest growth of v_theta in a step: more would need a path that the axis bends away.
+    real(wp), parameter :: largest_growth = 2.0_wp
+    real(wp) :: angle, r, r_new, v_t
     integer :: p
 
     do p = 1, n
-      v_r = velocity(1, p)
       v_t = velocity(3, p)
       if (abs(v_t) > 0.0_wp) then
-        angle = dt*v_t/max(x(1, p), r_floor)
-        velocity(1, p) = cos(angle)*v_r + sin(angle)*v_t
-        velocity(3, p) = cos(angle)*v_t - sin(angle)*v_r
+        r = max(x(1, p), r_floor)
+        r_new = max(x(1, p) + dt*grid_velocity(1, p), r_floor)
+        angle = dt*v_t/r
+        velocity(1, p) = cos(angle)*velocity(1, p) + sin(angle)*v_t
+        velocity(3, p) = v_t*min(r/r_new, largest_growth)
       end if
     end do
   end subroutine turn_basis
