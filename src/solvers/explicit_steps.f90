@@ -11,9 +11,11 @@ module mpm_explicit_steps
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
   use mpm_scatter, only: scatter
+  use mpm_seam, only: copy_to_ghosts, widen_at_seam, wrap_points
   use mpm_sort, only: base_bounds
   use mpm_stencil, only: block_size, stencil_keys, stencil_t
   use mpm_strings, only: to_text
+  use mpm_stability, only: courant_limit
   use mpm_threads, only: useful_threads
   use mpm_window, only: window_t
   implicit none
@@ -66,6 +68,7 @@ contains
       window%lo = body%points%lo
       window%n = 1
       window%n(:dim) = body%points%hi(:dim) - body%points%lo(:dim) + body%points%stencil%width
+      call widen_at_seam(body%points%stencil, window)
     end if
     call body%nodes%place(window, bytes_missing)
     if (bytes_missing > 0) then
@@ -240,6 +243,12 @@ contains
 
     associate (item => model%bodies(body)%body)
       if (item%points%n_inside == 0) return
+      if (any(item%points%stencil%periodic)) then
+        associate (stencil => item%points%stencil, nodes => item%nodes)
+          call copy_to_ghosts(stencil, nodes%window, nodes%kin%nvel, nodes%velocity)
+          call copy_to_ghosts(stencil, nodes%window, nodes%kin%nvel, nodes%increment)
+        end associate
+      end if
       blocks = (item%points%n_inside + block_size - 1)/block_size
       allocate (slot(blocks), cause(blocks))
       if (allocated(item%material)) then
@@ -359,6 +368,7 @@ contains
                                     points%stress(:, a:b), slot)
         if (slot > 0) cause = bad_stress
       end if
+      if (any(stencil%periodic)) call wrap_points(stencil, n, points%x(:, a:b))
       call stencil_keys(stencil, n, points%x(:, a:b), points%extent(a:b), key)
       changed = count(key(:n) /= points%key(a:b))
       points%key(a:b) = key(:n)
@@ -434,10 +444,10 @@ contains
 
   !> Largest stable time step of a body with FLIP and stress update last.
   !!
-  !! A mode of wave number k is stable for c**2 K dt**2 <= 4/(2 - mu). With n points per cell and
-  !! direction the hats give K = 4 s/h**2 and mu = 1 - (2/3 + 1/(3 n**2)) s, s = sin**2(k h/2); the
-  !! worst mode is s = 1: c dt/h <= 1/sqrt(5/3 + 1/(3 n**2)). In several dimensions K is at most the
-  !! sum over the directions, hence the safe bound c dt sqrt(sum 1/h_d**2) <= the same number.
+  !! A mode is stable for c**2 K dt**2 <= 4/(2 - mu), which bounds c dt/h in one dimension; see
+  !! `mpm_stability`. In several dimensions K is the sum over d of K_d times the mu of the other
+  !! directions, and mu the product of all. As p (2 - p mu_d) is largest at p = 1, dt is safe when
+  !! c dt sqrt(sum 1/h_d**2) is within the bound of one dimension.
   pure subroutine body_stable_step(spacing, body, wave_speed, limit)
     !> Spacing of the grid. [m]
     real(wp), intent(in) :: spacing(3)
@@ -475,8 +485,8 @@ contains
     per_cell = (product(spacing(:dim))*real(n, wp)/sum((2.0_wp*body%points%extent(:n))**dim)) &
                **(1.0_wp/real(dim, wp))
     per_cell = max(1.0_wp, per_cell)
-    length = 1.0_wp/(sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))* &
-                     sqrt(sum(1.0_wp/spacing(:dim)**2)))
+    length = courant_limit(body%points%stencil%kind, body%points%stencil%lambda, per_cell)/ &
+             sqrt(sum(1.0_wp/spacing(:dim)**2))
   end function stable_length
 
 end module mpm_explicit_steps
