@@ -157,9 +157,8 @@ contains
     integer :: first
 
     first = floor(s - reach(self%kind))
-    if (.not. self%periodic(d)) then
-      first = max(0, min(first, self%n_cells(d) + 1 - width))
-    end if
+    if (self%periodic(d)) return
+    first = max(0, min(first, self%n_cells(d) + 1 - width))
   end function stencil_first_node
 
   !> Keys of points of any basis.
@@ -216,8 +215,9 @@ contains
     if (.not. averaged) return
     do d = 1, stencil%dim
       if (stencil%periodic(d)) cycle
-      averaged = averaged .and. s(d) - 0.5_wp*extent(d) >= 0.0_wp &
-                 .and. s(d) + 0.5_wp*extent(d) <= real(stencil%n_cells(d), wp)
+      ! Written so that fused operations round as others do: keys and weights must agree.
+      averaged = averaged .and. s(d) >= 0.5_wp*extent(d) &
+                 .and. s(d) <= real(stencil%n_cells(d), wp) - 0.5_wp*extent(d)
     end do
     if (averaged) a(:stencil%dim) = 0.5_wp*extent(:stencil%dim)
   end subroutine corner_distance
@@ -266,7 +266,7 @@ contains
     real(wp), intent(inout) :: dw(*)
 
     if (stencil%averaged .and. stencil%general()) then
-      call averaged_weights(stencil, n, x, extent, w, dw)
+      call averaged_weights(stencil, n, x, extent, base, w, dw)
       return
     end if
     select case (10*stencil%dim + stencil%width)
@@ -363,11 +363,11 @@ contains
   end subroutine box_functions
 
   !> Functions of four nodes: cubic B-splines, in the first and last cell between walls folded.
-  pure subroutine cubic_functions(s, floor_s, n_cells, periodic, value, slope)
+  pure subroutine cubic_functions(s, base, n_cells, periodic, value, slope)
     !> Coordinate in cells.
     real(wp), intent(in) :: s
-    !> Cell of the coordinate.
-    integer, intent(in) :: floor_s
+    !> First of the nodes.
+    integer, intent(in) :: base
     !> Cells of the grid in this direction.
     integer, intent(in) :: n_cells
     !> Whether the direction is periodic.
@@ -378,13 +378,18 @@ contains
     real(wp), intent(out) :: slope(4)
     real(wp), parameter :: third = 1.0_wp/3.0_wp, sixth = 1.0_wp/6.0_wp
     real(wp) :: t, u
-    integer :: cell
 
-    cell = floor_s
-    if (.not. periodic) cell = min(cell, n_cells - 1)
-    t = s - real(cell, wp)
-    u = 1.0_wp - t
-    if (periodic .or. (cell > 0 .and. cell < n_cells - 1)) then
+    if (.not. periodic .and. base == 0 .and. s < 1.0_wp) then
+      t = max(few, s)
+      value = [1.0_wp - t + sixth*t**3, t - third*t**3, sixth*t**3, 0.0_wp]
+      slope = [0.5_wp*t*t - 1.0_wp, 1.0_wp - t*t, 0.5_wp*t*t, 0.0_wp]
+    else if (.not. periodic .and. base == n_cells - 3 .and. s >= real(n_cells - 1, wp)) then
+      u = max(few, real(n_cells, wp) - s)
+      value = [0.0_wp, sixth*u**3, u - third*u**3, 1.0_wp - u + sixth*u**3]
+      slope = [0.0_wp, -0.5_wp*u*u, u*u - 1.0_wp, 1.0_wp - 0.5_wp*u*u]
+    else
+      t = s - real(base + 1, wp)
+      u = 1.0_wp - t
       value(1) = sixth*u**3
       value(2) = 2.0_wp*third - t*t*(1.0_wp - 0.5_wp*t)
       value(3) = 2.0_wp*third - u*u*(1.0_wp - 0.5_wp*u)
@@ -393,19 +398,11 @@ contains
       slope(2) = t*(1.5_wp*t - 2.0_wp)
       slope(3) = -u*(1.5_wp*u - 2.0_wp)
       slope(4) = 0.5_wp*t*t
-    else if (cell == 0) then
-      t = max(few, t)
-      value = [1.0_wp - t + sixth*t**3, t - third*t**3, sixth*t**3, 0.0_wp]
-      slope = [0.5_wp*t*t - 1.0_wp, 1.0_wp - t*t, 0.5_wp*t*t, 0.0_wp]
-    else
-      u = max(few, u)
-      value = [0.0_wp, sixth*u**3, u - third*u**3, 1.0_wp - u + sixth*u**3]
-      slope = [0.0_wp, -0.5_wp*u*u, u*u - 1.0_wp, 1.0_wp - 0.5_wp*u*u]
     end if
   end subroutine cubic_functions
 
   !> Values and derivatives of any basis, corner-averaged.
-  pure subroutine averaged_weights(stencil, n, x, extent, w, dw)
+  pure subroutine averaged_weights(stencil, n, x, extent, base, w, dw)
     !> Basis.
     type(stencil_t), intent(in) :: stencil
     !> Number of points.
@@ -414,12 +411,14 @@ contains
     real(wp), intent(in) :: x(stencil%dim, n)
     !> Half sides of the points' boxes. [m] (n)
     real(wp), intent(in) :: extent(n)
+    !> First nodes. (3, n)
+    integer, intent(in) :: base(3, n)
     !> Values. (width, dim, n)
     real(wp), intent(out) :: w(stencil%width, stencil%dim, n)
     !> Derivatives. [1/m] (width, dim, n)
     real(wp), intent(out) :: dw(stencil%width, stencil%dim, n)
     real(wp) :: inverse_h(3), s(3), a(3), slope
-    integer :: p, d, first
+    integer :: p, d
     logical :: averaged
 
     inverse_h = 1.0_wp/stencil%h
@@ -430,15 +429,14 @@ contains
       call corner_distance(stencil, s, extent(p)*inverse_h, a, averaged)
       slope = 1.0_wp/extent(p)
       do d = 1, stencil%dim
-        first = stencil%first_node(d, stencil%width, s(d) - a(d))
         if (averaged) then
-          call add_functions(stencil, d, s(d) - a(d), first, 0.5_wp, -slope, 0.0_wp, w(:, d, p), &
-                             dw(:, d, p))
-          call add_functions(stencil, d, s(d) + a(d), first, 0.5_wp, slope, 0.0_wp, w(:, d, p), &
-                             dw(:, d, p))
+          call add_functions(stencil, d, s(d) - a(d), base(d, p), 0.5_wp, -slope, 0.0_wp, &
+                             w(:, d, p), dw(:, d, p))
+          call add_functions(stencil, d, s(d) + a(d), base(d, p), 0.5_wp, slope, 0.0_wp, &
+                             w(:, d, p), dw(:, d, p))
         else
-          call add_functions(stencil, d, s(d), first, 1.0_wp, 0.0_wp, inverse_h(d), w(:, d, p), &
-                             dw(:, d, p))
+          call add_functions(stencil, d, s(d), base(d, p), 1.0_wp, 0.0_wp, inverse_h(d), &
+                             w(:, d, p), dw(:, d, p))
         end if
       end do
     end do
@@ -464,27 +462,30 @@ contains
     real(wp), intent(inout) :: w(:)
     !> Derivatives. [1/m] (width)
     real(wp), intent(inout) :: dw(:)
-    real(wp) :: value(4), slope(4)
-    integer :: n, b, over
+    real(wp) :: value(4), slope(4), c
+    integer :: n, j
 
     n = natural_width(stencil%kind)
-    b = stencil%first_node(d, n, s)
-    ! Rounding may put the upper corner into the cell behind the one that it touches.
-    over = max(0, b + n - first - size(w))
-    b = b - over
+    c = s
+    if (stencil%periodic(d)) then
+      do while (c - real(first, wp) < reach(stencil%kind) - 0.25_wp)
+        c = c + real(stencil%n_cells(d), wp)
+      end do
+    end if
+    ! Rounding may put a corner into the cell next to the one that it touches.
+    j = max(0, min(stencil%first_node(d, n, c) - first, size(w) - n))
     select case (stencil%kind)
     case (basis_hat)
-      value(2) = off_node(s - real(b, wp))
+      value(2) = off_node(c - real(first + j, wp))
       value(1) = 1.0_wp - value(2)
       slope(:2) = [-1.0_wp, 1.0_wp]
     case (basis_box)
-      call box_functions(s - real(b + 1, wp), stencil%lambda(d), value(:3), slope(:3))
+      call box_functions(c - real(first + j + 1, wp), stencil%lambda(d), value(:3), slope(:3))
     case default
-      call cubic_functions(s, floor(s) - over, stencil%n_cells(d), stencil%periodic(d), value, slope)
+      call cubic_functions(c, first + j, stencil%n_cells(d), stencil%periodic(d), value, slope)
     end select
-    b = b - first
-    w(b + 1:b + n) = w(b + 1:b + n) + share*value(:n)
-    dw(b + 1:b + n) = dw(b + 1:b + n) + value_share*value(:n) + slope_share*slope(:n)
+    w(j + 1:j + n) = w(j + 1:j + n) + share*value(:n)
+    dw(j + 1:j + n) = dw(j + 1:j + n) + value_share*value(:n) + slope_share*slope(:n)
   end subroutine add_functions
 
 #define DIM 1
