@@ -31,8 +31,8 @@ contains
                           'Steffen, Kirby and Berzins, Int. J. Numer. Meth. Engng 76 (2008) &
                           &922-948', &
                           'grid'//nl//'{'//nl//'    class = "CartesianCubic"'//nl// &
-                          '    properties = {1.0, 0.5}     # Lx, Ly'//nl// &
-                          '    int-properties = {20, 10}   # Nx, Ny'//nl//'}')
+                          '    properties = {1.0, 1.0}     # Lx, Ly'//nl// &
+                          '    int-properties = {20, 20}   # Nx, Ny'//nl//'}')
     call add_lengths(description)
     call add_origin(description)
     call add_cells(description)

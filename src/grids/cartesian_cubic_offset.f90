@@ -33,8 +33,8 @@ contains
                           'Steffen, Kirby and Berzins, Int. J. Numer. Meth. Engng 76 (2008) &
                           &922-948', &
                           'grid'//nl//'{'//nl//'    class = "CartesianCubic_Offset"'//nl// &
-                          '    properties = {0.2, 0.5, 1.0}   # Lx, Ly, r0'//nl// &
-                          '    int-properties = {8, 20}       # Nx, Ny'//nl//'}')
+                          '    properties = {1.0, 1.0, 0.1}   # Lx, Ly, r0'//nl// &
+                          '    int-properties = {20, 20}      # Nx, Ny'//nl//'}')
     call add_lengths(description)
     call description%add_real('r0', 'm', 'lower face of the box along x')
     call add_origin(description, first=2)

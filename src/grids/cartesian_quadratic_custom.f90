@@ -32,8 +32,8 @@ contains
                           'Steffen, Kirby and Berzins, Int. J. Numer. Meth. Engng 76 (2008) &
                           &922-948', &
                           'grid'//nl//'{'//nl//'    class = "CartesianQuadraticCustom"'//nl// &
-                          '    properties = {1.0, 0.5}           # Lx, Ly'//nl// &
-                          '    int-properties = {20, 10, 1, 0}   # Nx, Ny, periodic along x'//nl//'}')
+                          '    properties = {1.0, 1.0}           # Lx, Ly'//nl// &
+                          '    int-properties = {20, 20, 1, 0}   # Nx, Ny, periodic along x'//nl//'}')
     call add_lengths(description)
     call add_origin(description)
     call add_cells(description)
