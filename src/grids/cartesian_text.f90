@@ -73,8 +73,8 @@ contains
     !> The grid has periodic directions.
     logical, intent(in) :: periodic
 
-    call description%add_note('TYPE 4: x is the radius r and y the height z; TYPE 5: the third &
-                              &direction has no cells.')
+    call description%add_note('TYPE 4: x is the radius r and y the height z. TYPE 5: no cells &
+                              &along the third direction.')
     if (smooth) then
       call description%add_note('Next to walls the functions are those of a node behind the wall &
                                 &with the linearly extrapolated value, so that linear fields are &

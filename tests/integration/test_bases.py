@@ -142,7 +142,7 @@ def test_seam_is_nowhere(
     scale = float(mass[0].sum()) * 1.5
     # They have pushed each other.
     assert momentum[0][0] < 0.9 * scale
-    total = [1.5 - 1.0, 0.5 - 0.25, 0.25 * (sim_type == 3)] * mass[0].sum()
+    total = np.array([1.5 - 1.0, 0.5 - 0.25, 0.25 * (sim_type == 3)]) * mass[0].sum()
     assert np.all(np.abs(sum(momentum) - total) <= 40 * ROUNDING * scale)
     # Sums in another order round differently, which 40 steps of an elastic body spread only.
     tolerance = 1e4 * EPSILON
