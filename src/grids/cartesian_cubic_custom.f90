@@ -33,7 +33,8 @@ contains
                           &922-948', &
                           'grid'//nl//'{'//nl//'    class = "CartesianCubicCustom"'//nl// &
                           '    properties = {1.0, 1.0}           # Lx, Ly'//nl// &
-                          '    int-properties = {20, 20, 1, 0}   # Nx, Ny, periodic along x'//nl//'}')
+                          '    int-properties = {20, 20, 1, 0}   # Nx, Ny, periodic along x'// &
+                          nl//'}')
     call add_lengths(description)
     call add_origin(description)
     call add_cells(description)

@@ -28,8 +28,8 @@ contains
     character(*), parameter :: nl = new_line('a')
 
     call description%init('grid', 'CartesianCubic_Offset', &
-                          'Cubic B-splines on equal cells of the box [r0, r0 + Lx] x [0, Ly], meant &
-                          &for hollow bodies in TYPE 4; TYPE 2 and 5 too.', &
+                          'Cubic B-splines on equal cells of the box [r0, r0 + Lx] x [0, Ly], &
+                          &meant for hollow bodies in TYPE 4; TYPE 2 and 5 too.', &
                           'Steffen, Kirby and Berzins, Int. J. Numer. Meth. Engng 76 (2008) &
                           &922-948', &
                           'grid'//nl//'{'//nl//'    class = "CartesianCubic_Offset"'//nl// &
@@ -56,8 +56,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (kin%dim /= 2) then
-      call properties%reject('r0', 'CartesianCubic_Offset is a grid of two dimensions, and TYPE '// &
-                             to_text(kin%sim_type)//' has '//to_text(kin%dim), error, &
+      call properties%reject('r0', 'CartesianCubic_Offset is a grid of two dimensions, and &
+                             &TYPE '//to_text(kin%sim_type)//' has '//to_text(kin%dim), error, &
                              'use CartesianCubic with a named property: x0 = ...')
       return
     end if

@@ -31,7 +31,8 @@ contains
                           'Sulsky, Chen and Schreyer, CMAME 118 (1994) 179-196', &
                           'grid'//nl//'{'//nl//'    class = "CartesianCustom"'//nl// &
                           '    properties = {1.0, 1.0}           # Lx, Ly'//nl// &
-                          '    int-properties = {20, 20, 1, 0}   # Nx, Ny, periodic along x'//nl//'}')
+                          '    int-properties = {20, 20, 1, 0}   # Nx, Ny, periodic along x'// &
+                          nl//'}')
     call add_lengths(description)
     call add_origin(description)
     call add_cells(description)

@@ -36,8 +36,8 @@ contains
     call add_lengths(description)
     call add_origin(description)
     call add_cells(description)
-    call description%add_note('The volumes of nodes next to a wall are 23/24 of the others (mpm_3d: &
-                              &47/48), so that node volumes fill the box.')
+    call description%add_note('The volumes of nodes next to a wall are 23/24 of the others &
+                              &(mpm_3d: 47/48), so that node volumes fill the box.')
     call add_notes(description, smooth=.true., periodic=.false.)
   end subroutine cartesian_quadratic_describe
 

@@ -33,13 +33,14 @@ contains
                           &922-948', &
                           'grid'//nl//'{'//nl//'    class = "CartesianQuadraticCustom"'//nl// &
                           '    properties = {1.0, 1.0}           # Lx, Ly'//nl// &
-                          '    int-properties = {20, 20, 1, 0}   # Nx, Ny, periodic along x'//nl//'}')
+                          '    int-properties = {20, 20, 1, 0}   # Nx, Ny, periodic along x'// &
+                          nl//'}')
     call add_lengths(description)
     call add_origin(description)
     call add_cells(description)
     call add_periodic(description)
-    call description%add_note('The volumes of nodes next to a wall are 23/24 of the others (mpm_3d: &
-                              &47/48), so that node volumes fill the box.')
+    call description%add_note('The volumes of nodes next to a wall are 23/24 of the others &
+                              &(mpm_3d: 47/48), so that node volumes fill the box.')
     call add_notes(description, smooth=.true., periodic=.true.)
   end subroutine cartesian_quadratic_custom_describe
 

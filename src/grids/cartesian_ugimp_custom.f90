@@ -34,7 +34,8 @@ contains
                           'Bardenhagen and Kober, CMES 5 (2004) 477-495', &
                           'grid'//nl//'{'//nl//'    class = "CartesianUGIMPCustom"'//nl// &
                           '    properties = {1.0, 1.0, 0.0125}   # Lx, Ly, l'//nl// &
-                          '    int-properties = {20, 20, 1, 0}   # Nx, Ny, periodic along x'//nl//'}')
+                          '    int-properties = {20, 20, 1, 0}   # Nx, Ny, periodic along x'// &
+                          nl//'}')
     call add_lengths(description)
     call description%add_real('l', 'm', 'half of the width of a point, at most half of a cell', &
                               above=0.0_wp)

@@ -52,6 +52,8 @@ contains
       integral = 0.5_wp + k
     case (1)
       integral = 1.0_wp - k
+    case default
+      return
     end select
   end function line_integral
 
@@ -75,6 +77,8 @@ contains
       moment = 1.0_wp/6.0_wp + k
     case (1)
       moment = k
+    case default
+      return
     end select
     if (node > n_cells - node) moment = -moment
   end function line_moment

@@ -1,9 +1,9 @@
 !> Largest stable Courant number of the bases, from the symbols of mapping and force.
 !!
 !! For points in a row, n in each cell, a mode of wave number k has
-!! mu = mean_p |sum_i N_i(x_p) exp(i k x_i)|**2 and K = mean_p |sum_i N_i'(x_p) exp(i k x_i)|**2. FLIP
-!! with the stress updated last is stable for c**2 K dt**2 <= 4/(2 - mu). The limit of c dt/h is that
-!! of the worst k and of the worst place of the row with respect to the nodes.
+!! mu = mean_p |sum_i N_i(x_p) exp(i k x_i)|**2 and K = mean_p |sum_i N_i'(x_p) exp(i k x_i)|**2.
+!! FLIP with the stress updated last is stable for c**2 K dt**2 <= 4/(2 - mu). The limit of c dt/h
+!! is that of the worst k and of the worst place of the row with respect to the nodes.
 module mpm_stability
   use mpm_kinds, only: wp
   use mpm_stencil, only: basis_box, basis_cubic

@@ -128,9 +128,7 @@ def last_frames(folder: Path, kind: str = "fpd") -> list[Frame]:
 @MAPPINGS
 @pytest.mark.parametrize("name", PERIODIC)
 @pytest.mark.parametrize("sim_type", [2, 3])
-def test_seam_is_nowhere(
-    mpm3d: Run, tmp_path: Path, name: str, sim_type: int, cpdi: int
-) -> None:
+def test_seam_is_nowhere(mpm3d: Run, tmp_path: Path, name: str, sim_type: int, cpdi: int) -> None:
     """A collision on the seam is the same as one half a period away."""
     found = []
     for shift in (0.5, 0.0, 1.0):
@@ -203,9 +201,7 @@ def test_fields_of_smooth_functions(mpm3d: Run, tmp_path: Path, name: str) -> No
 
 def test_linear_grids_have_no_such_fields(mpm3d: Run, tmp_path: Path) -> None:
     """The velocity of the grid at a node is that of the node."""
-    assert {"grid_velocity", "edge_id"}.isdisjoint(
-        node_fields(mpm3d, tmp_path, "CartesianCustom")
-    )
+    assert {"grid_velocity", "edge_id"}.isdisjoint(node_fields(mpm3d, tmp_path, "CartesianCustom"))
 
 
 @pytest.mark.parametrize(

@@ -198,7 +198,8 @@ contains
     real(wp), intent(out) :: integral(0:)
     !> First moments in cells squared; of nodes at a periodic seam they have no meaning. (0:n)
     real(wp), intent(out) :: moment(0:)
-    real(wp) :: breaks(5), middle, half, s, value(0:ubound(integral, 1)), slope(0:ubound(integral, 1))
+    real(wp), dimension(0:ubound(integral, 1)) :: value, slope
+    real(wp) :: breaks(5), middle, half, s
     real(wp), parameter :: point(3) = [-0.7745966692414834_wp, 0.0_wp, 0.7745966692414834_wp]
     real(wp), parameter :: weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp
     integer :: cell, part, i, q

@@ -90,7 +90,8 @@ contains
     !> Property lists.
     character(:), allocatable :: text
     character(:), allocatable :: reals, integers
-    character(*), parameter :: lengths(3) = ['2.4', '2.2', '3.9'], origins(3) = ['0.3 ', '-0.2', '0.1 ']
+    character(*), parameter :: lengths(3) = ['2.4', '2.2', '3.9']
+    character(*), parameter :: origins(3) = ['0.3 ', '-0.2', '0.1 ']
     character(1), parameter :: axes(3) = ['x', 'y', 'z']
     type(kinematics_t) :: kin
     integer :: d
