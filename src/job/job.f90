@@ -111,6 +111,12 @@ contains
       if (allocated(points%load)) then
         bits = bits + storage_size(points%load, lp)*size(points%load, kind=lp)
       end if
+      if (allocated(points%reference_volume)) then
+        bits = bits + storage_size(points%mass, lp)*size(points%mass, kind=lp)
+      end if
+      if (allocated(points%smoothed_volume)) then
+        bits = bits + storage_size(points%mass, lp)*size(points%mass, kind=lp)
+      end if
       bits = bits + storage_size(points%id, lp)*3_lp*size(points%id, kind=lp)
       bits = bits + storage_size(nodes%mass, lp)* &
              (size(nodes%mass, kind=lp) + size(nodes%momentum, kind=lp) &

@@ -61,6 +61,10 @@ module mpm_points
     !> Acceleration by a body force that differs from point to point; not allocated when there is
     !> none. [m/s2] (nvel, n)
     real(wp), allocatable :: load(:, :)
+    !> Volume at the start, for solvers that ask for it. [m3] (n)
+    real(wp), allocatable :: reference_volume(:)
+    !> Volume that the material sees, where it is not `volume`. [m3] (n)
+    real(wp), allocatable :: smoothed_volume(:)
     !> The basis between points and nodes.
     type(stencil_t) :: stencil
     !> Key of the stencil, or `outside`. (n)
@@ -247,6 +251,8 @@ contains
     call permute_vectors(order, self%stress)
     if (allocated(self%gradient)) call permute_vectors(order, self%gradient)
     if (allocated(self%load)) call permute_vectors(order, self%load)
+    if (allocated(self%reference_volume)) call permute_scalars(order, self%reference_volume)
+    if (allocated(self%smoothed_volume)) call permute_scalars(order, self%smoothed_volume)
   end subroutine points_permute
 
   !> Permute integers.

@@ -1,11 +1,11 @@
 !> The parts of an explicit step, from which the explicit solvers are put together.
 module mpm_explicit_steps
-  use mpm_advance, only: advance_points
+  use mpm_advance, only: advance_points, turn_stress
   use mpm_body, only: body_t
   use mpm_errors, only: err_simulation, error_t, raise
   use mpm_g2p, only: g2p
   use mpm_kinds, only: lp, wp
-  use mpm_kinematics, only: type_axisymmetric
+  use mpm_kinematics, only: kinematics_t, type_axisymmetric
   use mpm_material, only: material_t
   use mpm_model, only: model_t
   use mpm_nodes, only: nodes_t
@@ -20,7 +20,9 @@ module mpm_explicit_steps
   use mpm_window, only: window_t
   implicit none
   private
-  public :: body_stable_step, locate_points, map_to_nodes, update_nodes, update_points
+  public :: advance_stress, body_stable_step, locate_points, map_to_nodes, raise_bad_point
+  public :: update_nodes, update_points
+  public :: bad_stress
 
   !> Why a block of points stopped the run.
   integer, parameter :: went_well = 0, bad_motion = 1, bad_stress = 2
@@ -227,7 +229,7 @@ contains
   end subroutine advance_nodes
 
   !> Advance the points of a body with the grid, then their stress.
-  subroutine update_points(model, body, dt, keep_gradient, error)
+  subroutine update_points(model, body, dt, keep_gradient, error, keep_stress)
     !> The model.
     type(model_t), intent(inout) :: model
     !> Position of the body in the model's list.
@@ -238,8 +240,11 @@ contains
     logical, intent(in) :: keep_gradient
     !> A point is not finite, moved more than a cell or lost its volume.
     type(error_t), allocatable, intent(out) :: error
+    !> Leave the stress as it is; false when left out.
+    logical, intent(in), optional :: keep_stress
     integer, allocatable :: slot(:), cause(:)
     integer :: blocks, first_bad, i
+    logical :: with_stress
 
     associate (item => model%bodies(body)%body)
       if (item%points%n_inside == 0) return
@@ -251,7 +256,9 @@ contains
       end if
       blocks = (item%points%n_inside + block_size - 1)/block_size
       allocate (slot(blocks), cause(blocks))
-      if (allocated(item%material)) then
+      with_stress = allocated(item%material)
+      if (present(keep_stress)) with_stress = with_stress .and. .not. keep_stress
+      if (with_stress) then
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
                           keep_gradient, slot, cause, item%material)
       else
@@ -364,8 +371,8 @@ contains
     if (slot == 0) then
       cause = went_well
       if (present(material)) then
-        call material%update_stress(n, dt, gradient, points%mass(a:b), points%volume(a:b), &
-                                    points%stress(:, a:b), slot)
+        call advance_stress(points%kin, material, n, dt, gradient, points%mass(a:b), &
+                            points%volume(a:b), points%stress(:, a:b), slot)
         if (slot > 0) cause = bad_stress
       end if
       if (any(stencil%periodic)) call wrap_points(stencil, n, points%x(:, a:b))
@@ -376,6 +383,31 @@ contains
     end if
     if (slot > 0) slot = slot + a - 1
   end subroutine update_block
+
+  !> Advance the stress of a block of points over one step.
+  subroutine advance_stress(kin, material, n, dt, gradient, mass, volume, stress, first_bad)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Constitutive law.
+    class(material_t), intent(in) :: material
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients of the step. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes at the end of the step. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses, of the start of the step on entry, of its end on exit. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(kin%nstress, n)
+    !> First point for which there is no stress; 0 when there is none.
+    integer, intent(out) :: first_bad
+
+    call material%update_stress(n, dt, gradient, mass, volume, stress, first_bad)
+    if (kin%sim_type == type_axisymmetric) call turn_stress(n, dt, gradient, stress)
+  end subroutine advance_stress
 
   !> The error that stops a run that went bad.
   subroutine raise_bad_point(model, body, slot, cause, dt, error)
@@ -444,10 +476,8 @@ contains
 
   !> Largest stable time step of a body with FLIP and stress update last.
   !!
-  !! A mode is stable for c**2 K dt**2 <= 4/(2 - mu), which bounds c dt/h in one dimension; see
-  !! `mpm_stability`. In several dimensions K is the sum over d of K_d times the mu of the other
-  !! directions, and mu the product of all. As p (2 - p mu_d) is largest at p = 1, dt is safe when
-  !! c dt sqrt(sum 1/h_d**2) is within the bound of one dimension.
+  !! A mode is stable for c**2 K dt**2 <= 4/(2 - mu), which bounds c dt over the smallest spacing;
+  !! see `mpm_stability`.
   pure subroutine body_stable_step(spacing, body, wave_speed, limit)
     !> Spacing of the grid. [m]
     real(wp), intent(in) :: spacing(3)
@@ -481,12 +511,11 @@ contains
 
     n = body%points%n_inside
     dim = body%points%kin%dim
-    ! Points per cell and direction: the spacing over the side of the mean point.
-    per_cell = (product(spacing(:dim))*real(n, wp)/sum((2.0_wp*body%points%extent(:n))**dim)) &
+    ! Points per cell along the smallest spacing, as the side of the mean point has it.
+    per_cell = minval(spacing(:dim))/(sum((2.0_wp*body%points%extent(:n))**dim)/real(n, wp)) &
                **(1.0_wp/real(dim, wp))
     per_cell = max(1.0_wp, per_cell)
-    length = courant_limit(body%points%stencil%kind, body%points%stencil%lambda, per_cell)/ &
-             sqrt(sum(1.0_wp/spacing(:dim)**2))
+    length = courant_limit(body%points%stencil, per_cell)*minval(spacing(:dim))
   end function stable_length
 
 end module mpm_explicit_steps

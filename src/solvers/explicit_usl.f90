@@ -10,7 +10,7 @@ module mpm_explicit_usl
   use mpm_solver, only: solver_t
   implicit none
   private
-  public :: explicit_usl_t
+  public :: explicit_usl_step, explicit_usl_t
 
   !> FLIP with symplectic Euler steps.
   type, extends(solver_t) :: explicit_usl_t
@@ -18,12 +18,16 @@ module mpm_explicit_usl
     logical :: averaged = .true.
     !> Contacts use trial momenta that include the forces so far.
     logical :: implicit_contact = .true.
+    !> Velocities advance from the middle of the last step to that of the present one.
+    logical :: staggered = .false.
   contains
     procedure, nopass :: describe => explicit_usl_describe
     procedure :: init => explicit_usl_init
     procedure :: start => explicit_usl_start
     procedure :: step => explicit_usl_step
     procedure :: stable_step => explicit_usl_stable_step
+    !> Advance the points of a body, their volume and stress, when its nodes are advanced.
+    procedure :: advance_body => explicit_usl_advance_body
   end type explicit_usl_t
 
 contains
@@ -46,6 +50,9 @@ contains
     call description%add_integer('contact', '1: contacts use trial momenta with all forces so far &
                                  &(implicit); 0: the momenta of the start of the step (explicit)', &
                                  default=1, lower=0, upper=1)
+    call description%add_integer('staggered', '1: velocities advance by (dt + last dt)/2, dt/2 in &
+                                 &the first step, so that they belong to the middle of each step; &
+                                 &0: by dt', default=0, lower=0, upper=1)
     call description%add_note('TYPE 4 carries the inertia of the rotating basis (v_theta^2/r and &
                               &v_r v_theta/r), which mpm_3d lacks; close to the axis 1/r is &
                               &replaced by its limit.')
@@ -68,6 +75,7 @@ contains
 
     self%averaged = properties%integer('cpdi') == 1
     self%implicit_contact = properties%integer('contact') == 1
+    self%staggered = properties%integer('staggered') == 1
   end subroutine explicit_usl_init
 
   !> Choose the basis of each body and map the initial state to the nodes.
@@ -95,6 +103,8 @@ contains
   end subroutine explicit_usl_start
 
   !> Advance the model by one step.
+  !!
+  !! Public since a class that overrides `step` loses its own type in a call of its parent's.
   subroutine explicit_usl_step(self, model, dt, keep_gradient, error)
     !> The solver.
     class(explicit_usl_t), intent(inout) :: self
@@ -106,8 +116,11 @@ contains
     logical, intent(in) :: keep_gradient
     !> The simulation went bad.
     type(error_t), allocatable, intent(out) :: error
+    real(wp) :: kick
     integer :: i
 
+    kick = dt
+    if (self%staggered) kick = 0.5_wp*(model%last_dt + dt)
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
         if (.not. body%active) cycle
@@ -119,24 +132,44 @@ contains
       end associate
     end do
     do i = 1, size(model%contacts)
-      call model%contacts(i)%contact%apply(model%grid, model%bodies, dt, self%implicit_contact, &
+      call model%contacts(i)%contact%apply(model%grid, model%bodies, kick, self%implicit_contact, &
                                            model%threads)
     end do
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
         if (.not. body%active) cycle
         if (allocated(body%boundary)) then
-          call body%boundary%apply(model%grid, body%points, body%nodes, dt)
+          call body%boundary%apply(model%grid, body%points, body%nodes, kick)
         end if
-        call update_nodes(body%nodes, dt, model%threads)
+        call update_nodes(body%nodes, kick, model%threads)
       end associate
     end do
     do i = 1, size(model%bodies)
       if (.not. model%bodies(i)%body%active) cycle
-      call update_points(model, i, dt, keep_gradient, error)
+      call self%advance_body(model, i, dt, keep_gradient, error)
       if (allocated(error)) return
     end do
   end subroutine explicit_usl_step
+
+  !> Advance the points of a body with the grid, then their stress.
+  subroutine explicit_usl_advance_body(self, model, body, dt, keep_gradient, error)
+    !> The solver.
+    class(explicit_usl_t), intent(inout) :: self
+    !> The model, its nodes advanced.
+    type(model_t), intent(inout) :: model
+    !> Position of the body in the model's list.
+    integer, intent(in) :: body
+    !> Length of the step. [s]
+    real(wp), intent(in) :: dt
+    !> Store the velocity gradients, for a frame.
+    logical, intent(in) :: keep_gradient
+    !> The simulation went bad.
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (unused => self)
+    end associate
+    call update_points(model, body, dt, keep_gradient, error)
+  end subroutine explicit_usl_advance_body
 
   !> Largest stable time step of a body by linear theory.
   pure subroutine explicit_usl_stable_step(self, model, body, wave_speed, limit)

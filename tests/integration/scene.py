@@ -147,6 +147,8 @@ class Scene:
     job: str = ""
     #: The section driver, when it is none of the two above.
     driver: str | None = None
+    #: The section solver, when it is not ExplicitUSL with the two flags.
+    solver: str | None = None
 
     def config(self) -> str:
         """Return the text of the config."""
@@ -166,6 +168,12 @@ class Scene:
     int-properties = {{{numbers(self.cells)}}}
 }}
 """
+        solver_section = f"""solver
+{{
+    class = "ExplicitUSL"
+    int-properties = {{{self.cpdi}, {self.implicit_contact}}}
+}}
+"""
         head = f"""job
 {{
     t = {self.t_start!r}
@@ -180,12 +188,7 @@ serializer
     int-properties = {{{self.digits}}}
     str-properties = {{"frames", "save", "test"}}
 }}
-{self.driver or driver_section}solver
-{{
-    class = "ExplicitUSL"
-    int-properties = {{{self.cpdi}, {self.implicit_contact}}}
-}}
-{self.grid or grid_section}"""
+{self.driver or driver_section}{self.solver or solver_section}{self.grid or grid_section}"""
         return head + "".join([*(body.section() for body in self.bodies), *self.contacts])
 
     def write(self, folder: Path) -> Path:
