@@ -26,11 +26,12 @@ AXES = "xyz"
 
 @dataclass(frozen=True)
 class Scene:
-    """A block in a box: simulation TYPE, basis flag of the solver."""
+    """A block in a box: simulation TYPE, basis flag of the solver, class of the grid."""
 
     name: str
     sim_type: int
     cpdi: int
+    grid: str = "CartesianLinear"
 
 
 SCENES = (
@@ -41,6 +42,12 @@ SCENES = (
     Scene("out-of-plane-linear", 5, 0),
     Scene("3d-linear", 3, 0),
     Scene("3d-cpdi", 3, 1),
+    Scene("plane-ugimp", 2, 0, "CartesianUGIMP"),
+    Scene("plane-quadratic", 2, 0, "CartesianQuadratic"),
+    Scene("plane-cubic", 2, 0, "CartesianCubic"),
+    Scene("3d-ugimp", 3, 0, "CartesianUGIMP"),
+    Scene("3d-quadratic", 3, 0, "CartesianQuadratic"),
+    Scene("3d-cubic", 3, 0, "CartesianCubic"),
 )
 
 
@@ -61,7 +68,9 @@ def write_scene(scene: Scene, folder: Path, points: int) -> int:
         velocity = [0.0, 0.2, 0.0]
     block = fill(Block(lower, upper), sim_type, spacing=spacing, density=1000.0, velocity=velocity)
     write_points(folder / "block.points", block)
-    box = ", ".join(["1.0"] * dim)
+    # uGIMP: half of the width of a point.
+    half_width = [repr(spacing / 2)] if scene.grid == "CartesianUGIMP" else []
+    box = ", ".join(["1.0"] * dim + half_width)
     counts = ", ".join([str(cells)] * dim)
     # A Courant number of about 0.1 for a wave speed of 36.7 m/s.
     dt = 0.1 / cells / 36.7
@@ -70,7 +79,7 @@ def write_scene(scene: Scene, folder: Path, points: int) -> int:
 serializer {{ class = MinimalVTK  properties = {{0}}  str-properties = {{frames, save, bench}} }}
 driver {{ class = DefaultDriver  properties = {{1}} }}
 solver {{ class = ExplicitUSL  int-properties = {{{scene.cpdi}, 1}} }}
-grid {{ class = CartesianLinear  properties = {{{box}}}  int-properties = {{{counts}}} }}
+grid {{ class = {scene.grid}  properties = {{{box}}}  int-properties = {{{counts}}} }}
 body {{
   class = DefaultBody  name = block  point-file = block.points
   point-class = DefaultPoints  node-class = DefaultNodes

@@ -8,6 +8,7 @@ module mpm_box_faces
   use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
+  use mpm_line_integrals, only: line_integral, line_moment, smoothing
   use mpm_nodes, only: nodes_t
   use mpm_window, only: intersect, window_t
   implicit none
@@ -37,6 +38,8 @@ module mpm_box_faces
     real(wp) :: upper(3) = 0.0_wp
     !> Directions in which the grid is periodic.
     logical :: periodic(3) = .false.
+    !> Half the variance of the kernel that turns hats into the basis. [cells^2]
+    real(wp) :: smoothing(3) = 0.0_wp
   contains
     !> Take the box from the grid.
     procedure :: init => box_faces_init
@@ -98,6 +101,7 @@ contains
       self%lower = grid%lower
       self%upper = grid%upper
       self%periodic = grid%periodic
+      self%smoothing = smoothing(grid%kind, grid%lambda)
     class default
       call raise(error, err_input, 'the boundary class '//class_name//' needs a Cartesian grid', &
                  hint='its walls are the faces of a box; use a Cartesian grid or another boundary')
@@ -168,7 +172,7 @@ contains
     face = 0
   end function box_faces_first
 
-  !> Integral of a node's hat function over a face.
+  !> Integral of a node's function over a face.
   !!
   !! A unit area in TYPE 1, a line of unit depth in TYPE 2 and 5; in TYPE 4 per radian: R dz on the
   !! faces of constant r, r dr on those of constant z.
@@ -181,7 +185,6 @@ contains
     integer, intent(in) :: node(3)
     !> Area. [m2]
     real(wp) :: area
-    real(wp) :: length
     integer :: axis, d
 
     axis = axis_of(face)
@@ -191,16 +194,15 @@ contains
     end if
     do d = 1, self%kin%dim
       if (d == axis) cycle
-      length = self%h(d)
-      if (node(d) == 0 .or. node(d) == self%last(d)) length = 0.5_wp*length
-      area = area*length
+      area = area*self%h(d)*line_integral(node(d), self%last(d), self%smoothing(d), &
+                                          self%periodic(d))
       if (self%kin%sim_type == type_axisymmetric .and. d == 1) then
         area = area*mean_radius(self, node(1))
       end if
     end do
   end function box_faces_area
 
-  !> Mean of r weighted with a node's hat function.
+  !> Mean of r weighted with a node's function.
   pure function mean_radius(self, i) result(r)
     !> The faces.
     class(box_faces_t), intent(in) :: self
@@ -209,16 +211,14 @@ contains
     !> The mean. [m]
     real(wp) :: r
 
-    if (i == 0) then
-      r = self%lower(1) + self%h(1)/3.0_wp
-    else if (i == self%last(1)) then
-      r = self%upper(1) - self%h(1)/3.0_wp
-    else
-      r = self%lower(1) + real(i, wp)*self%h(1)
-    end if
+    r = self%lower(1) + real(i, wp)*self%h(1)
+    if (i == self%last(1)) r = self%upper(1)
+    r = r + self%h(1)*line_moment(i, self%last(1), self%smoothing(1), self%periodic(1)) &
+        /line_integral(i, self%last(1), self%smoothing(1), self%periodic(1))
   end function mean_radius
 
-  !> Fix components of velocity, momentum and force on a face.
+  !> Fix components of velocity, momentum and force on a face; the faces of periodic directions are
+  !! no walls.
   pure subroutine box_faces_fix(self, face, first, last, nodes)
     !> The faces.
     class(box_faces_t), intent(in) :: self
@@ -233,6 +233,7 @@ contains
     type(window_t) :: part
     integer :: hi(3), i, j, k, n
 
+    if (self%periodic(axis_of(face))) return
     part = self%part(face, nodes%window)
     hi = part%hi()
     do k = part%lo(3), hi(3)
@@ -248,7 +249,7 @@ contains
     end do
   end subroutine box_faces_fix
 
-  !> Mark components as fixed (1) in a mask for output.
+  !> Mark components as fixed (1) in a mask for output, on faces that are walls.
   pure subroutine box_faces_mark(self, face, first, last, window, mask)
     !> The faces.
     class(box_faces_t), intent(in) :: self
@@ -265,6 +266,7 @@ contains
     type(window_t) :: part
     integer :: hi(3), i, j, k
 
+    if (self%periodic(axis_of(face))) return
     part = self%part(face, window)
     hi = part%hi()
     do k = part%lo(3), hi(3)

@@ -110,7 +110,8 @@ contains
     end do
   end subroutine read_walls
 
-  !> Periodic faces come in pairs, on a grid that is periodic in their direction.
+  !> Periodic faces come in pairs, on a grid that is periodic in their direction; such a direction
+  !! takes no other rule.
   subroutine check_periodic(faces, properties, walls, error)
     !> The faces of the grid.
     type(box_faces_t), intent(in) :: faces
@@ -124,10 +125,16 @@ contains
     integer :: face, axis, other
 
     do face = 1, faces%n
-      if (walls(face)%code /= wall_periodic) cycle
       axis = axis_of(face)
-      other = 4*axis - 1 - face
       name = trim(face_names(face))
+      if (walls(face)%code /= wall_periodic) then
+        if (walls(face)%code == wall_free .or. .not. faces%periodic(axis)) cycle
+        call properties%reject(name, name//' = '//to_text(walls(face)%code)//' does not fit the &
+                               &grid, which is periodic along '//axis_names(axis), error, &
+                               'use 3 (periodic) on both faces, or a grid with walls there')
+        return
+      end if
+      other = 4*axis - 1 - face
       if (.not. faces%periodic(axis)) then
         call properties%reject(name, name//' = 3 (periodic) does not fit the grid, which is not &
                                &periodic along '//axis_names(axis), error, &

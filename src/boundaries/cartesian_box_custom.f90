@@ -94,7 +94,8 @@ contains
                               &that of the points, per radian, so that a uniform traction &
                               &balances a uniform stress.')
     call description%add_note('Code 3 needs both faces of the direction and a grid that is &
-                              &periodic in it, which moves the points.')
+                              &periodic in it, which moves the points; such a grid takes only &
+                              &codes 3 and -1 there.')
     call description%add_note('bc_nodal_mask: 0 no rule, 1 fixed, -1 free, 2 friction, 3 &
                               &periodic, 4, 5, 6 as the code; 2, 4, 5, 6 are negative on upper &
                               &faces. Nodes without memory show 0.')

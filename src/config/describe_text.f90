@@ -111,6 +111,7 @@ contains
                to_text(property%upper)
       end if
     end if
+    if (property%by_name) text = text//', by name'
     if (all(property%types)) return
     types = ''
     do t = 1, 5

@@ -48,6 +48,8 @@ module mpm_description
     logical :: any_real = .false.
     !> The property takes all entries that are left, none included.
     logical :: is_list = .false.
+    !> Entries by position do not count it; it is given by name only.
+    logical :: by_name = .false.
     !> The simulation TYPEs in which the property exists.
     logical :: types(5) = .true.
   end type property_t
@@ -130,7 +132,7 @@ contains
 
   !> Append a property of the list of reals; without `default` it is required.
   pure subroutine description_add_real(self, name, unit, meaning, default, lower, upper, above, &
-                                       below, any_real, is_list, types)
+                                       below, any_real, is_list, types, by_name)
     !> The description.
     class(description_t), intent(inout) :: self
     !> Name in named entries.
@@ -155,6 +157,8 @@ contains
     logical, intent(in), optional :: is_list
     !> TYPEs in which it exists.
     logical, intent(in), optional :: types(5)
+    !> It is given by name only.
+    logical, intent(in), optional :: by_name
     type(property_t) :: item
 
     item%name = name
@@ -181,6 +185,7 @@ contains
       item%required = .not. is_list
     end if
     if (present(types)) item%types = types
+    if (present(by_name)) item%by_name = by_name
     call append(self%properties, item)
   end subroutine description_add_real
 

@@ -180,10 +180,10 @@ contains
     type(properties_t), intent(inout) :: properties
     !> Unknown, surplus or bad entry.
     type(error_t), allocatable, intent(out) :: error
-    integer, allocatable :: slots(:), declared(:)
+    integer, allocatable :: slots(:), declared(:), in_order(:)
     integer :: i, k, n
 
-    allocate (slots(0), declared(0))
+    allocate (slots(0), declared(0), in_order(0))
     n = 0
     do i = 1, size(description%properties)
       if (.not. description%properties(i)%types(sim_type)) cycle
@@ -191,12 +191,16 @@ contains
       if (description%properties(i)%kind /= kind) cycle
       slots = [slots, n]
       declared = [declared, i]
+      if (.not. description%properties(i)%by_name) in_order = [in_order, size(declared)]
     end do
     do i = 1, size(values)
       if (len(values(i)%name) > 0) then
         call find_named(description, declared, values(i), k, error)
       else
-        call find_positional(description, declared, kind, i, size(values), values(i), k, error)
+        call find_positional(description, declared(in_order), kind, i, size(values), values(i), k, &
+                             error)
+        if (allocated(error)) return
+        k = in_order(k)
       end if
       if (allocated(error)) return
       call set_value(description%properties(declared(k)), values(i), properties%items(slots(k)), &

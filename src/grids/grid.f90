@@ -2,6 +2,7 @@
 module mpm_grid
   use mpm_configurable, only: configurable_t
   use mpm_errors, only: error_t
+  use mpm_field_writer, only: field_writer_t
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
   use mpm_properties, only: properties_t
@@ -38,6 +39,12 @@ module mpm_grid
     procedure(in_domain_i), deferred :: in_domain
     !> The basis as the kernels need it.
     procedure(make_stencil_i), deferred :: make_stencil
+    !> After how many nodes the grid repeats in each direction; 0 where it does not.
+    procedure :: periods => grid_periods
+    !> Send the velocity of the grid at its nodes, for frames.
+    procedure :: write_velocity => grid_write_velocity
+    !> Send fields of the grid itself, for frames.
+    procedure :: write_fields => grid_write_fields
   end type grid_t
 
   abstract interface
@@ -163,5 +170,46 @@ module mpm_grid
       type(error_t), allocatable, intent(out) :: error
     end subroutine make_stencil_i
   end interface
+
+contains
+
+  !> Most grids do not repeat.
+  pure function grid_periods(self) result(periods)
+    !> The grid.
+    class(grid_t), intent(in) :: self
+    !> Nodes of a period; 0 where there is none.
+    integer :: periods(3)
+
+    associate (unused => self)
+    end associate
+    periods = 0
+  end function grid_periods
+
+  !> Nothing to send where the velocity of the grid at a node is that of the node.
+  subroutine grid_write_velocity(self, window, velocity, writer)
+    !> The grid.
+    class(grid_t), intent(in) :: self
+    !> Nodes that have memory.
+    type(window_t), intent(in) :: window
+    !> Nodal velocities. [m/s] (nvel, nn)
+    real(wp), intent(in) :: velocity(:, :)
+    !> Receiver of nodal fields.
+    class(field_writer_t), intent(inout) :: writer
+
+    associate (unused => self, unused_window => window, unused_velocity => velocity, &
+               unused_writer => writer)
+    end associate
+  end subroutine grid_write_velocity
+
+  !> Most grids have no fields of their own.
+  subroutine grid_write_fields(self, writer)
+    !> The grid.
+    class(grid_t), intent(in) :: self
+    !> Receiver of nodal fields.
+    class(field_writer_t), intent(inout) :: writer
+
+    associate (unused => self, unused_writer => writer)
+    end associate
+  end subroutine grid_write_fields
 
 end module mpm_grid

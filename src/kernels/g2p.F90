@@ -54,6 +54,9 @@ contains
     case (14)
       call g2p_1d_4(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
+    case (15)
+      call g2p_1d_5(stencil, window, n, key, x, extent, node_velocity, &
+                   node_increment, velocity, increment, gradient)
     case (22)
       call g2p_plane_2(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
@@ -62,6 +65,9 @@ contains
                    node_increment, velocity, increment, gradient)
     case (24)
       call g2p_plane_4(stencil, window, n, key, x, extent, node_velocity, &
+                   node_increment, velocity, increment, gradient)
+    case (25)
+      call g2p_plane_5(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
     case (32)
       call g2p_3d_2(stencil, window, n, key, x, extent, node_velocity, &
@@ -72,6 +78,9 @@ contains
     case (34)
       call g2p_3d_4(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
+    case (35)
+      call g2p_3d_5(stencil, window, n, key, x, extent, node_velocity, &
+                   node_increment, velocity, increment, gradient)
     case (42)
       call g2p_axisymmetric_2(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
@@ -81,6 +90,9 @@ contains
     case (44)
       call g2p_axisymmetric_4(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
+    case (45)
+      call g2p_axisymmetric_5(stencil, window, n, key, x, extent, node_velocity, &
+                   node_increment, velocity, increment, gradient)
     case (52)
       call g2p_out_of_plane_2(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
@@ -89,6 +101,9 @@ contains
                    node_increment, velocity, increment, gradient)
     case (54)
       call g2p_out_of_plane_4(stencil, window, n, key, x, extent, node_velocity, &
+                   node_increment, velocity, increment, gradient)
+    case (55)
+      call g2p_out_of_plane_5(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
     end select
   end subroutine g2p
@@ -108,6 +123,11 @@ contains
 #undef WIDTH
 #define NAME g2p_1d_4
 #define WIDTH 4
+#include "g2p_template.inc"
+#undef NAME
+#undef WIDTH
+#define NAME g2p_1d_5
+#define WIDTH 5
 #include "g2p_template.inc"
 #undef NAME
 #undef WIDTH
@@ -132,6 +152,11 @@ contains
 #include "g2p_template.inc"
 #undef NAME
 #undef WIDTH
+#define NAME g2p_plane_5
+#define WIDTH 5
+#include "g2p_template.inc"
+#undef NAME
+#undef WIDTH
 #undef DIM
 #undef NVEL
 #undef NGRAD
@@ -150,6 +175,11 @@ contains
 #undef WIDTH
 #define NAME g2p_3d_4
 #define WIDTH 4
+#include "g2p_template.inc"
+#undef NAME
+#undef WIDTH
+#define NAME g2p_3d_5
+#define WIDTH 5
 #include "g2p_template.inc"
 #undef NAME
 #undef WIDTH
@@ -175,6 +205,11 @@ contains
 #include "g2p_template.inc"
 #undef NAME
 #undef WIDTH
+#define NAME g2p_axisymmetric_5
+#define WIDTH 5
+#include "g2p_template.inc"
+#undef NAME
+#undef WIDTH
 #undef DIM
 #undef NVEL
 #undef NGRAD
@@ -194,6 +229,11 @@ contains
 #undef WIDTH
 #define NAME g2p_out_of_plane_4
 #define WIDTH 4
+#include "g2p_template.inc"
+#undef NAME
+#undef WIDTH
+#define NAME g2p_out_of_plane_5
+#define WIDTH 5
 #include "g2p_template.inc"
 #undef NAME
 #undef WIDTH

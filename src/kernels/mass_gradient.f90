@@ -2,6 +2,7 @@
 module mpm_mass_gradient
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
+  use mpm_seam, only: fold_ghosts
   use mpm_stencil, only: axis_fraction, decode_keys, outside, stencil_t, stencil_weights
   use mpm_window, only: window_t
   implicit none
@@ -14,6 +15,65 @@ contains
   !!
   !! Only points whose stencils reach the window are visited, in the order of their cells.
   pure subroutine mass_gradient(kin, stencil, window, n, order, row_offset, first_row, key, x, &
+                                extent, mass, gradient)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> The nodes wanted.
+    type(window_t), intent(in) :: window
+    !> Number of points inside the grid.
+    integer, intent(in) :: n
+    !> Slots of the points in the order of their cells. (n)
+    integer, intent(in) :: order(n)
+    !> Points before each row of cells. (0:rows)
+    integer, intent(in) :: row_offset(0:)
+    !> Grid index of the first row.
+    integer, intent(in) :: first_row
+    !> Keys. (n)
+    integer, intent(in) :: key(n)
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(kin%dim, n)
+    !> Half sides of the points' boxes. [m] (n)
+    real(wp), intent(in) :: extent(n)
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Gradients, components beyond dim 0. [kg/m] (nvel, nn)
+    real(wp), intent(out) :: gradient(:, :)
+    real(wp), allocatable :: all_gradients(:, :)
+    type(window_t) :: wide
+    integer :: d, i, j, k, hi(3), here, there
+
+    if (.not. any(stencil%periodic)) then
+      call sum_gradients(kin, stencil, window, n, order, row_offset, first_row, key, x, extent, &
+                         mass, gradient)
+      return
+    end if
+    ! Points beyond a seam reach the ghosts of the nodes wanted.
+    wide = window
+    do d = 1, kin%dim
+      if (.not. stencil%periodic(d)) cycle
+      wide%lo(d) = 0
+      wide%n(d) = stencil%n_cells(d) + stencil%width - 1
+    end do
+    allocate (all_gradients(size(gradient, 1), wide%size()))
+    call sum_gradients(kin, stencil, wide, n, order, row_offset, first_row, key, x, extent, mass, &
+                       all_gradients)
+    call fold_ghosts(stencil, wide, size(gradient, 1), all_gradients)
+    hi = window%hi()
+    do k = window%lo(3), hi(3)
+      do j = window%lo(2), hi(2)
+        do i = window%lo(1), hi(1)
+          here = window%index([i, j, k])
+          there = wide%index([i, j, k])
+          gradient(:, here) = all_gradients(:, there)
+        end do
+      end do
+    end do
+  end subroutine mass_gradient
+
+  !> The sums at the nodes of a window, ghosts of periodic grids for themselves.
+  pure subroutine sum_gradients(kin, stencil, window, n, order, row_offset, first_row, key, x, &
                                 extent, mass, gradient)
     !> Component counts.
     type(kinematics_t), intent(in) :: kin
@@ -67,7 +127,7 @@ contains
       call add_point(stencil%width, kin%dim, base(:, 1), w(:, :, 1), dw(:, :, 1), m, window, &
                      gradient)
     end do
-  end subroutine mass_gradient
+  end subroutine sum_gradients
 
   !> Whether a stencil has a node in a window.
   pure function reaches(stencil, dim, base, window) result(does)

@@ -4,6 +4,7 @@
 module mpm_nodal_volume
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
+  use mpm_seam, only: image_of
   use mpm_stencil, only: axis_fraction, block_size, decode_keys, outside, stencil_keys, &
                          stencil_t, stencil_weights
   use mpm_window, only: window_t
@@ -53,7 +54,8 @@ contains
       call decode_keys(stencil, nb, keys, base)
       do j = 1, nb
         if (keys(j) == outside) cycle
-        if (any(base(:, j) > part%hi() .or. base(:, j) + reach < part%lo)) cycle
+        if (any(.not. stencil%periodic .and. &
+                (base(:, j) > part%hi() .or. base(:, j) + reach < part%lo))) cycle
         share = volume(order(first + j - 1))
         if (per_radius .and. kin%sim_type == type_axisymmetric) then
           share = share/max(xb(1, j), axis_fraction*stencil%h(1))
@@ -81,12 +83,12 @@ contains
     real(wp), intent(in) :: share
     !> Sums at the nodes of the part. [m3]
     real(wp), intent(inout) :: node_volume(:)
-    real(wp) :: w(12), dw(12), product_w
+    real(wp) :: w(15), dw(15), product_w
     integer :: lo(3), hi(3), node(3), i, j, k, d
 
     call stencil_weights(stencil, 1, x, [extent], base, w, dw)
-    lo = max(base, part%lo)
-    hi = min(base + reach, part%hi())
+    lo = merge(base, max(base, part%lo), stencil%periodic)
+    hi = merge(base + reach, min(base + reach, part%hi()), stencil%periodic)
     do k = lo(3), hi(3)
       do j = lo(2), hi(2)
         do i = lo(1), hi(1)
@@ -95,6 +97,8 @@ contains
           do d = 1, stencil%dim
             product_w = product_w*w((d - 1)*stencil%width + node(d) - base(d) + 1)
           end do
+          node = image_of(stencil, node)
+          if (.not. part%holds(node)) cycle
           node_volume(part%index(node)) = node_volume(part%index(node)) + product_w
         end do
       end do

@@ -65,6 +65,9 @@ contains
     case (14)
       call p2g_1d_4(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
+    case (15)
+      call p2g_1d_5(stencil, window, n, order, key, x, extent, mass, volume, &
+                   velocity, stress, node_mass, node_momentum, node_force)
     case (22)
       call p2g_plane_2(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
@@ -73,6 +76,9 @@ contains
                    velocity, stress, node_mass, node_momentum, node_force)
     case (24)
       call p2g_plane_4(stencil, window, n, order, key, x, extent, mass, volume, &
+                   velocity, stress, node_mass, node_momentum, node_force)
+    case (25)
+      call p2g_plane_5(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
     case (32)
       call p2g_3d_2(stencil, window, n, order, key, x, extent, mass, volume, &
@@ -83,6 +89,9 @@ contains
     case (34)
       call p2g_3d_4(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
+    case (35)
+      call p2g_3d_5(stencil, window, n, order, key, x, extent, mass, volume, &
+                   velocity, stress, node_mass, node_momentum, node_force)
     case (42)
       call p2g_axisymmetric_2(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
@@ -92,6 +101,9 @@ contains
     case (44)
       call p2g_axisymmetric_4(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
+    case (45)
+      call p2g_axisymmetric_5(stencil, window, n, order, key, x, extent, mass, volume, &
+                   velocity, stress, node_mass, node_momentum, node_force)
     case (52)
       call p2g_out_of_plane_2(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
@@ -100,6 +112,9 @@ contains
                    velocity, stress, node_mass, node_momentum, node_force)
     case (54)
       call p2g_out_of_plane_4(stencil, window, n, order, key, x, extent, mass, volume, &
+                   velocity, stress, node_mass, node_momentum, node_force)
+    case (55)
+      call p2g_out_of_plane_5(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
     end select
   end subroutine p2g
@@ -119,6 +134,11 @@ contains
 #undef WIDTH
 #define NAME p2g_1d_4
 #define WIDTH 4
+#include "p2g_template.inc"
+#undef NAME
+#undef WIDTH
+#define NAME p2g_1d_5
+#define WIDTH 5
 #include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
@@ -143,6 +163,11 @@ contains
 #include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
+#define NAME p2g_plane_5
+#define WIDTH 5
+#include "p2g_template.inc"
+#undef NAME
+#undef WIDTH
 #undef DIM
 #undef NVEL
 #undef NSTRESS
@@ -161,6 +186,11 @@ contains
 #undef WIDTH
 #define NAME p2g_3d_4
 #define WIDTH 4
+#include "p2g_template.inc"
+#undef NAME
+#undef WIDTH
+#define NAME p2g_3d_5
+#define WIDTH 5
 #include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
@@ -186,6 +216,11 @@ contains
 #include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
+#define NAME p2g_axisymmetric_5
+#define WIDTH 5
+#include "p2g_template.inc"
+#undef NAME
+#undef WIDTH
 #undef DIM
 #undef NVEL
 #undef NSTRESS
@@ -205,6 +240,11 @@ contains
 #undef WIDTH
 #define NAME p2g_out_of_plane_4
 #define WIDTH 4
+#include "p2g_template.inc"
+#undef NAME
+#undef WIDTH
+#define NAME p2g_out_of_plane_5
+#define WIDTH 5
 #include "p2g_template.inc"
 #undef NAME
 #undef WIDTH

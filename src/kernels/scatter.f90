@@ -3,11 +3,13 @@
 !! The points, ordered by cell, are cut into slabs of whole cell rows along the last direction. A
 !! slab is at least as thick as a stencil reaches beyond it, so that all even slabs can be added at
 !! once, then all odd ones: no two threads ever add to one node, and every sum is formed in the same
-!! order for any number of threads.
+!! order for any number of threads. At the seams of periodic grids what went to ghosts of nodes is
+!! then added to the nodes.
 module mpm_scatter
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
   use mpm_p2g, only: p2g
+  use mpm_seam, only: fold_ghosts
   use mpm_stencil, only: stencil_t
   use mpm_window, only: window_t
   implicit none
@@ -84,6 +86,10 @@ contains
       !$omp end do
     end do
     !$omp end parallel
+    if (.not. any(stencil%periodic)) return
+    call fold_ghosts(stencil, window, 1, node_mass)
+    call fold_ghosts(stencil, window, kin%nvel, node_momentum)
+    call fold_ghosts(stencil, window, kin%nvel, node_force)
   end subroutine scatter
 
 end module mpm_scatter

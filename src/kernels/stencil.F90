@@ -2,13 +2,24 @@
 !!
 !! Every basis on a Cartesian grid is a product of 1D functions. Per point and direction a stencil
 !! gives the first node and the values and derivatives of the functions of `width` nodes; the
-!! kernels multiply them. Two bases exist:
+!! kernels multiply them. The bases, with the nodes that a point reaches:
 !!
-!! - linear (hat functions), width 2;
-!! - corner-averaged (`cpdi` flag 1 of mpm_3d): the mean of the hats at x + a and x - a, and their
-!!   difference over 2a as derivative, with a = half of the point's half side. Width 3 while
-!!   a <= h/2, 4 while a <= h. When any corner of the point's box lies outside the grid, the point
-!!   uses the hats at its own position.
+!! - `basis_hat`: piecewise linear, 2;
+!! - `basis_box`: hats averaged over a box of half width lambda h, lambda <= 1/2, 3. This is uGIMP,
+!!   and with lambda = 1/2 the quadratic B-spline;
+!! - `basis_cubic`: cubic B-splines, 4;
+!! - any of them corner-averaged (`cpdi` flag 1 of mpm_3d): the mean of the functions at x + a and
+!!   x - a, and their difference over 2a as derivative, with a = half of the point's half side. One
+!!   node more while a <= h/2, for hats two while a <= h. When any corner of the point's box lies
+!!   outside the grid, the point uses the functions at its own position.
+!!
+!! Box and cubic functions reach beyond a wall; the node behind it has the linearly extrapolated
+!! value v(-1) = 2 v(0) - v(1), and its function is folded into those of nodes 0 and 1. So linear
+!! fields are reproduced up to the wall, where the wall node has weight 1.
+!!
+!! In periodic directions of N cells node N is node 0. The first node of a stencil is taken from
+!! 0 ... N - 1, and the stencil runs on beyond node N; `mpm_seam` brings together what belongs to
+!! one node.
 !!
 !! A point on a node line belongs to the cell above it, a point on the upper face to the last cell,
 !! so that the one-sided derivative of one cell is used everywhere. The far node of that cell, whose
@@ -20,6 +31,7 @@ module mpm_stencil
   private
   public :: stencil_t
   public :: axis_fraction, block_size, decode_keys, outside, stencil_keys, stencil_weights
+  public :: basis_box, basis_cubic, basis_hat, natural_width
 
   !> Points treated together by the kernels; their scratch fits the first-level cache.
   integer, parameter :: block_size = 128
@@ -27,21 +39,44 @@ module mpm_stencil
   real(wp), parameter :: axis_fraction = 1.0e-3_wp
   !> Key of a point outside the grid.
   integer, parameter :: outside = -1
+  !> Hat functions.
+  integer, parameter :: basis_hat = 1
+  !> Hats averaged over a box: quadratic B-splines and uGIMP.
+  integer, parameter :: basis_box = 2
+  !> Cubic B-splines.
+  integer, parameter :: basis_cubic = 3
+  !> Nodes per direction that the functions of a basis have at a point.
+  integer, parameter :: natural_width(3) = [2, 3, 4]
+  !> Distance in cells by which the first node lies below the cell of the point.
+  real(wp), parameter :: reach(3) = [0.0_wp, 0.5_wp, 1.0_wp]
+  !> Distance from a node, in cells, at which points of a wall cell are kept.
+  real(wp), parameter :: few = 4.0_wp*epsilon(1.0_wp)
 
   !> What the kernels need to know of grid and basis.
   type :: stencil_t
     !> Dimensions of the grid.
     integer :: dim = 3
-    !> Nodes per direction: 2, 3 or 4.
+    !> Nodes per direction: 2, 3, 4 or 5.
     integer :: width = 2
-    !> Corner-averaged instead of plain hats.
+    !> One of `basis_hat`, `basis_box`, `basis_cubic`.
+    integer :: kind = basis_hat
+    !> Corner-averaged instead of the functions themselves.
     logical :: averaged = .false.
+    !> `basis_box`: half width of the box over the spacing, above 0, at most 1/2.
+    real(wp) :: lambda(3) = 0.5_wp
+    !> Directions in which the grid repeats.
+    logical :: periodic(3) = .false.
     !> Lower corner of the grid. [m]
     real(wp) :: lower(3) = 0.0_wp
     !> Spacing of the nodes. [m]
     real(wp) :: h(3) = 1.0_wp
     !> Cells in each direction; 0 in unused ones.
     integer :: n_cells(3) = 0
+  contains
+    !> Whether points must be treated by the general routines.
+    procedure, private :: general => stencil_general
+    !> First node of the functions at a coordinate.
+    procedure, private :: first_node => stencil_first_node
   end type stencil_t
 
 contains
@@ -62,6 +97,10 @@ contains
     integer :: last(3), stride(3), p, d, b
     logical :: inside, averaged
 
+    if (stencil%general()) then
+      call general_keys(stencil, n, x, extent, key)
+      return
+    end if
     inverse_h = 1.0_wp/stencil%h
     top = real(stencil%n_cells, wp)
     last = max(0, stencil%n_cells + 1 - stencil%width)
@@ -92,6 +131,96 @@ contains
       end do
     end do
   end subroutine stencil_keys
+
+  !> Whether a basis is neither hats nor their averages between walls.
+  pure function stencil_general(self) result(general)
+    !> Basis.
+    class(stencil_t), intent(in) :: self
+    !> Whether it is.
+    logical :: general
+
+    general = self%kind /= basis_hat .or. any(self%periodic)
+  end function stencil_general
+
+  !> First node of the functions at a coordinate, for stencils of so many nodes; between walls the
+  !! stencil is kept inside the grid, in periodic directions the index may be negative.
+  elemental function stencil_first_node(self, d, width, s) result(first)
+    !> Basis.
+    class(stencil_t), intent(in) :: self
+    !> Direction.
+    integer, intent(in) :: d
+    !> Nodes of the stencil.
+    integer, intent(in) :: width
+    !> Coordinate in cells.
+    real(wp), intent(in) :: s
+    !> Index of the node.
+    integer :: first
+
+    first = floor(s - reach(self%kind))
+    if (self%periodic(d)) return
+    first = max(0, min(first, self%n_cells(d) + 1 - width))
+  end function stencil_first_node
+
+  !> Keys of points of any basis.
+  pure subroutine general_keys(stencil, n, x, extent, key)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Positions; within the box also in periodic directions. [m] (dim, n)
+    real(wp), intent(in) :: x(stencil%dim, n)
+    !> Half sides of the points' boxes. [m] (n)
+    real(wp), intent(in) :: extent(n)
+    !> As of `stencil_keys`. (n)
+    integer, intent(out) :: key(n)
+    real(wp) :: inverse_h(3), s(3), a(3)
+    integer :: stride(3), p, d, b
+    logical :: averaged
+
+    inverse_h = 1.0_wp/stencil%h
+    stride = [1, stencil%n_cells(1) + 1, (stencil%n_cells(1) + 1)*(stencil%n_cells(2) + 1)]
+    do p = 1, n
+      key(p) = outside
+      do d = 1, stencil%dim
+        s(d) = (x(d, p) - stencil%lower(d))*inverse_h(d)
+        if (.not. (s(d) >= 0.0_wp .and. s(d) <= real(stencil%n_cells(d), wp))) exit
+      end do
+      if (d <= stencil%dim) cycle
+      call corner_distance(stencil, s, extent(p)*inverse_h, a, averaged)
+      key(p) = 0
+      do d = 1, stencil%dim
+        b = stencil%first_node(d, stencil%width, s(d) - a(d))
+        if (stencil%periodic(d)) b = modulo(b, stencil%n_cells(d))
+        key(p) = key(p) + stride(d)*b
+      end do
+    end do
+  end subroutine general_keys
+
+  !> Distance of the corners over which the functions of a point are averaged.
+  pure subroutine corner_distance(stencil, s, extent, a, averaged)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Position in cells.
+    real(wp), intent(in) :: s(3)
+    !> Half side of the point's box in cells.
+    real(wp), intent(in) :: extent(3)
+    !> Distances in cells; 0 when the functions at the point itself count.
+    real(wp), intent(out) :: a(3)
+    !> Whether the functions are averaged.
+    logical, intent(out) :: averaged
+    integer :: d
+
+    a = 0.0_wp
+    averaged = stencil%averaged
+    if (.not. averaged) return
+    do d = 1, stencil%dim
+      if (stencil%periodic(d)) cycle
+      ! Written so that fused operations round as others do: keys and weights must agree.
+      averaged = averaged .and. s(d) >= 0.5_wp*extent(d) &
+                 .and. s(d) <= real(stencil%n_cells(d), wp) - 0.5_wp*extent(d)
+    end do
+    if (averaged) a(:stencil%dim) = 0.5_wp*extent(:stencil%dim)
+  end subroutine corner_distance
 
   !> First nodes of the stencils of points from their keys.
   pure subroutine decode_keys(stencil, n, key, base)
@@ -136,6 +265,10 @@ contains
     !> Derivatives. [1/m] (width, dim, n)
     real(wp), intent(inout) :: dw(*)
 
+    if (stencil%averaged .and. stencil%general()) then
+      call averaged_weights(stencil, n, x, extent, base, w, dw)
+      return
+    end if
     select case (10*stencil%dim + stencil%width)
     case (12)
       call weights_1d_2(stencil, n, x, base, w, dw)
@@ -164,7 +297,6 @@ contains
     real(wp), intent(in) :: xi
     !> The coordinate, but neither 0 nor 1.
     real(wp) :: inside
-    real(wp), parameter :: few = 4.0_wp*epsilon(1.0_wp)
 
     inside = max(few, min(1.0_wp - few, xi))
   end function off_node
@@ -202,6 +334,159 @@ contains
       dw(j + 1, d) = inverse_h(d)
     end do
   end subroutine cell_weights
+
+  !> Functions of three nodes: hats averaged over a box.
+  !!
+  !! With the nodes at -1, 0, 1 and |t| <= 1/2 this is the mean of the hats over t - lambda ...
+  !! t + lambda. Beyond, it goes on as the hats, which is what folding the node behind a wall gives
+  !! for the half cell next to the wall.
+  pure subroutine box_functions(t, lambda, value, slope)
+    !> Coordinate in cells from the middle node, -1 to 1.
+    real(wp), intent(in) :: t
+    !> Half width of the box in cells.
+    real(wp), intent(in) :: lambda
+    !> Values.
+    real(wp), intent(out) :: value(3)
+    !> Derivatives with respect to the coordinate in cells.
+    real(wp), intent(out) :: slope(3)
+    real(wp) :: u, c, quarter
+
+    u = max(few - 1.0_wp, min(1.0_wp - few, t))
+    c = max(-lambda, min(lambda, u))
+    quarter = 0.25_wp/lambda
+    value(1) = quarter*(lambda - c)**2 + max(0.0_wp, c - u)
+    value(3) = quarter*(lambda + c)**2 + max(0.0_wp, u - c)
+    value(2) = 1.0_wp - (value(1) + value(3))
+    slope(1) = -2.0_wp*quarter*(lambda - c)
+    slope(3) = 2.0_wp*quarter*(lambda + c)
+    slope(2) = -(slope(1) + slope(3))
+  end subroutine box_functions
+
+  !> Functions of four nodes: cubic B-splines, in the first and last cell between walls folded.
+  pure subroutine cubic_functions(s, base, n_cells, periodic, value, slope)
+    !> Coordinate in cells.
+    real(wp), intent(in) :: s
+    !> First of the nodes.
+    integer, intent(in) :: base
+    !> Cells of the grid in this direction.
+    integer, intent(in) :: n_cells
+    !> Whether the direction is periodic.
+    logical, intent(in) :: periodic
+    !> Values.
+    real(wp), intent(out) :: value(4)
+    !> Derivatives with respect to the coordinate in cells.
+    real(wp), intent(out) :: slope(4)
+    real(wp), parameter :: third = 1.0_wp/3.0_wp, sixth = 1.0_wp/6.0_wp
+    real(wp) :: t, u
+
+    if (.not. periodic .and. base == 0 .and. s < 1.0_wp) then
+      t = max(few, s)
+      value = [1.0_wp - t + sixth*t**3, t - third*t**3, sixth*t**3, 0.0_wp]
+      slope = [0.5_wp*t*t - 1.0_wp, 1.0_wp - t*t, 0.5_wp*t*t, 0.0_wp]
+    else if (.not. periodic .and. base == n_cells - 3 .and. s >= real(n_cells - 1, wp)) then
+      u = max(few, real(n_cells, wp) - s)
+      value = [0.0_wp, sixth*u**3, u - third*u**3, 1.0_wp - u + sixth*u**3]
+      slope = [0.0_wp, -0.5_wp*u*u, u*u - 1.0_wp, 1.0_wp - 0.5_wp*u*u]
+    else
+      t = s - real(base + 1, wp)
+      u = 1.0_wp - t
+      value(1) = sixth*u**3
+      value(2) = 2.0_wp*third - t*t*(1.0_wp - 0.5_wp*t)
+      value(3) = 2.0_wp*third - u*u*(1.0_wp - 0.5_wp*u)
+      value(4) = sixth*t**3
+      slope(1) = -0.5_wp*u*u
+      slope(2) = t*(1.5_wp*t - 2.0_wp)
+      slope(3) = -u*(1.5_wp*u - 2.0_wp)
+      slope(4) = 0.5_wp*t*t
+    end if
+  end subroutine cubic_functions
+
+  !> Values and derivatives of any basis, corner-averaged.
+  pure subroutine averaged_weights(stencil, n, x, extent, base, w, dw)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(stencil%dim, n)
+    !> Half sides of the points' boxes. [m] (n)
+    real(wp), intent(in) :: extent(n)
+    !> First nodes. (3, n)
+    integer, intent(in) :: base(3, n)
+    !> Values. (width, dim, n)
+    real(wp), intent(out) :: w(stencil%width, stencil%dim, n)
+    !> Derivatives. [1/m] (width, dim, n)
+    real(wp), intent(out) :: dw(stencil%width, stencil%dim, n)
+    real(wp) :: inverse_h(3), s(3), a(3), slope
+    integer :: p, d
+    logical :: averaged
+
+    inverse_h = 1.0_wp/stencil%h
+    w = 0.0_wp
+    dw = 0.0_wp
+    do p = 1, n
+      s(:stencil%dim) = (x(:, p) - stencil%lower(:stencil%dim))*inverse_h(:stencil%dim)
+      call corner_distance(stencil, s, extent(p)*inverse_h, a, averaged)
+      slope = 1.0_wp/extent(p)
+      do d = 1, stencil%dim
+        if (averaged) then
+          call add_functions(stencil, d, s(d) - a(d), base(d, p), 0.5_wp, -slope, 0.0_wp, &
+                             w(:, d, p), dw(:, d, p))
+          call add_functions(stencil, d, s(d) + a(d), base(d, p), 0.5_wp, slope, 0.0_wp, &
+                             w(:, d, p), dw(:, d, p))
+        else
+          call add_functions(stencil, d, s(d), base(d, p), 1.0_wp, 0.0_wp, inverse_h(d), &
+                             w(:, d, p), dw(:, d, p))
+        end if
+      end do
+    end do
+  end subroutine averaged_weights
+
+  !> Add the functions at a coordinate to the values and derivatives of a stencil.
+  pure subroutine add_functions(stencil, d, s, first, share, value_share, slope_share, w, dw)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Direction.
+    integer, intent(in) :: d
+    !> Coordinate in cells.
+    real(wp), intent(in) :: s
+    !> First node of the stencil.
+    integer, intent(in) :: first
+    !> Factor of the values in `w`.
+    real(wp), intent(in) :: share
+    !> Factor of the values in `dw`. [1/m]
+    real(wp), intent(in) :: value_share
+    !> Factor of the derivatives in `dw`. [1/m]
+    real(wp), intent(in) :: slope_share
+    !> Values. (width)
+    real(wp), intent(inout) :: w(:)
+    !> Derivatives. [1/m] (width)
+    real(wp), intent(inout) :: dw(:)
+    real(wp) :: value(4), slope(4), c
+    integer :: n, j
+
+    n = natural_width(stencil%kind)
+    c = s
+    if (stencil%periodic(d)) then
+      do while (c - real(first, wp) < reach(stencil%kind) - 0.25_wp)
+        c = c + real(stencil%n_cells(d), wp)
+      end do
+    end if
+    ! Rounding may put a corner into the cell next to the one that it touches.
+    j = max(0, min(stencil%first_node(d, n, c) - first, size(w) - n))
+    select case (stencil%kind)
+    case (basis_hat)
+      value(2) = off_node(c - real(first + j, wp))
+      value(1) = 1.0_wp - value(2)
+      slope(:2) = [-1.0_wp, 1.0_wp]
+    case (basis_box)
+      call box_functions(c - real(first + j + 1, wp), stencil%lambda(d), value(:3), slope(:3))
+    case default
+      call cubic_functions(c, first + j, stencil%n_cells(d), stencil%periodic(d), value, slope)
+    end select
+    w(j + 1:j + n) = w(j + 1:j + n) + share*value(:n)
+    dw(j + 1:j + n) = dw(j + 1:j + n) + value_share*value(:n) + slope_share*slope(:n)
+  end subroutine add_functions
 
 #define DIM 1
 #define NAME weights_1d_2

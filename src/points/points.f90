@@ -8,6 +8,7 @@ module mpm_points
   use mpm_kinematics, only: kinematics_t
   use mpm_document, only: value_t
   use mpm_properties, only: properties_t
+  use mpm_seam, only: wrap_points
   use mpm_sort, only: base_bounds, sort_by_cell
   use mpm_stencil, only: outside, stencil_keys, stencil_t
   implicit none
@@ -178,6 +179,9 @@ contains
     type(stencil_t), intent(in) :: stencil
 
     self%stencil = stencil
+    if (any(stencil%periodic)) then
+      call wrap_points(stencil, self%n_inside, self%x(:, :self%n_inside))
+    end if
     self%mass_cutoff = relative_cutoff*sum(self%mass)/real(self%n, wp)
     call stencil_keys(stencil, self%n_inside, self%x(:, :self%n_inside), &
                       self%extent(:self%n_inside), self%key(:self%n_inside))

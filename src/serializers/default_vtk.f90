@@ -66,10 +66,14 @@ contains
     associate (unused => self)
     end associate
     if (body%active .and. allocated(body%nodes)) then
+      associate (window => body%nodes%window)
+        call model%grid%write_velocity(window, body%nodes%velocity(:, :window%size()), writer)
+      end associate
       call body%nodes%write_fields(model%last_dt, writer)
       if (allocated(body%boundary)) then
         call body%boundary%write_fields(model%grid, body%nodes, writer)
       end if
+      call model%grid%write_fields(writer)
     end if
     if (.not. allocated(model%contacts)) return
     do i = 1, size(model%contacts)

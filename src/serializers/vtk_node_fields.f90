@@ -13,6 +13,8 @@ module mpm_vtk_node_fields
 
   !> All nodes and cells of the grid; values are 0 outside the window of a field.
   type, extends(vtk_fields_t) :: vtk_node_fields_t
+    !> Nodes after which the grid repeats in each direction; 0 where it does not.
+    integer, private :: periods(3) = 0
   contains
     !> Start the file and write the grid.
     procedure :: open => vtk_node_fields_open
@@ -49,6 +51,7 @@ contains
     self%when = when
     self%kin = grid%kin
     self%whole = grid%whole()
+    self%periods = grid%periods()
     call self%put_positions(grid)
     call self%put_cells(grid)
     call self%file%start_fields(self%whole%size())
@@ -123,6 +126,8 @@ contains
 
     do i = 1, size(source)
       node = node_at(self%whole, first + i - 1)
+      ! The last node of a period is the first one.
+      where (self%periods > 0 .and. node == self%periods) node = 0
       source(i) = 0
       if (window%holds(node)) source(i) = window%index(node)
     end do

@@ -11,9 +11,11 @@ module mpm_explicit_steps
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
   use mpm_scatter, only: scatter
+  use mpm_seam, only: copy_to_ghosts, widen_at_seam, wrap_points
   use mpm_sort, only: base_bounds
   use mpm_stencil, only: block_size, stencil_keys, stencil_t
   use mpm_strings, only: to_text
+  use mpm_stability, only: courant_limit
   use mpm_threads, only: useful_threads
   use mpm_window, only: window_t
   implicit none
@@ -68,6 +70,7 @@ contains
       window%lo = body%points%lo
       window%n = 1
       window%n(:dim) = body%points%hi(:dim) - body%points%lo(:dim) + body%points%stencil%width
+      call widen_at_seam(body%points%stencil, window)
     end if
     call body%nodes%place(window, bytes_missing)
     if (bytes_missing > 0) then
@@ -245,6 +248,12 @@ contains
 
     associate (item => model%bodies(body)%body)
       if (item%points%n_inside == 0) return
+      if (any(item%points%stencil%periodic)) then
+        associate (stencil => item%points%stencil, nodes => item%nodes)
+          call copy_to_ghosts(stencil, nodes%window, nodes%kin%nvel, nodes%velocity)
+          call copy_to_ghosts(stencil, nodes%window, nodes%kin%nvel, nodes%increment)
+        end associate
+      end if
       blocks = (item%points%n_inside + block_size - 1)/block_size
       allocate (slot(blocks), cause(blocks))
       with_stress = allocated(item%material)
@@ -366,6 +375,7 @@ contains
                             points%volume(a:b), points%stress(:, a:b), slot)
         if (slot > 0) cause = bad_stress
       end if
+      if (any(stencil%periodic)) call wrap_points(stencil, n, points%x(:, a:b))
       call stencil_keys(stencil, n, points%x(:, a:b), points%extent(a:b), key)
       changed = count(key(:n) /= points%key(a:b))
       points%key(a:b) = key(:n)
@@ -466,11 +476,8 @@ contains
 
   !> Largest stable time step of a body with FLIP and stress update last.
   !!
-  !! A mode of wave number k is stable for c**2 K dt**2 <= 4/(2 - mu). With n points per cell and
-  !! direction the hats give K = 4 s/h**2 and mu = 1 - (2/3 + 1/(3 n**2)) s, s = sin**2(k h/2); the
-  !! worst mode is s = 1: c dt/h <= 1/sqrt(5/3 + 1/(3 n**2)). In several dimensions K is the sum over
-  !! the directions of K_d times the mu of the others, and mu the product of all. From n = 2 on, and
-  !! with averaged functions, the worst mode runs along one direction, that of the smallest spacing.
+  !! A mode is stable for c**2 K dt**2 <= 4/(2 - mu), which bounds c dt over the smallest spacing;
+  !! see `mpm_stability`.
   pure subroutine body_stable_step(spacing, body, wave_speed, limit)
     !> Spacing of the grid. [m]
     real(wp), intent(in) :: spacing(3)
@@ -500,12 +507,6 @@ contains
     !> Wave speed times stable step. [m]
     real(wp) :: length
     real(wp) :: per_cell
-    !> One point a cell and hats: its place in the cell counts. The worst is the middle in one
-    !! direction, and on node lines in the others, with mu = 1/2 or 3/4 in the first.
-    real(wp), parameter :: single_point_limit(3) = &
-      [sqrt(0.5_wp), 2.0_wp/3.0_wp, sqrt(0.32_wp)]
-    !> Two points a cell, but for the rounding of volumes and roots.
-    real(wp), parameter :: nearly_two = 2.0_wp - 1.0e-6_wp
     integer :: n, dim
 
     n = body%points%n_inside
@@ -514,12 +515,7 @@ contains
     per_cell = minval(spacing(:dim))/(sum((2.0_wp*body%points%extent(:n))**dim)/real(n, wp)) &
                **(1.0_wp/real(dim, wp))
     per_cell = max(1.0_wp, per_cell)
-    if (per_cell < nearly_two .and. .not. body%points%stencil%averaged) then
-      length = single_point_limit(dim)
-    else
-      length = 1.0_wp/sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))
-    end if
-    length = length*minval(spacing(:dim))
+    length = courant_limit(body%points%stencil, per_cell)*minval(spacing(:dim))
   end function stable_length
 
 end module mpm_explicit_steps

@@ -4,6 +4,7 @@ module mpm_volume_metrics
   use mpm_kinds, only: wp
   use mpm_model, only: model_t
   use mpm_nodal_volume, only: nodal_volume
+  use mpm_seam, only: widen_at_seam
   use mpm_window, only: window_t
   implicit none
   private
@@ -34,6 +35,7 @@ contains
       window%lo = points%lo
       window%n = 1
       window%n(:dim) = points%hi(:dim) - points%lo(:dim) + points%stencil%width
+      call widen_at_seam(points%stencil, window)
       allocate (volume(window%size()))
       call nodal_volume(model%kin, points%stencil, window, n, points%order(:n), points%x, &
                         points%extent, points%volume, .true., volume)

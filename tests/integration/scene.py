@@ -141,6 +141,8 @@ class Scene:
     implicit_contact: int = 1
     #: Sections after the bodies.
     contacts: Sequence[str] = field(default_factory=list)
+    #: The section grid, when it is not CartesianLinear with the lengths and cells above.
+    grid: str | None = None
     #: Lines of the section job.
     job: str = ""
     #: The section driver, when it is none of the two above.
@@ -157,6 +159,13 @@ class Scene:
 {{
     class = "{driver}"
     properties = {{{numbers(reals)}}}
+}}
+"""
+        grid_section = f"""grid
+{{
+    class = "CartesianLinear"
+    properties = {{{numbers(self.lengths)}}}
+    int-properties = {{{numbers(self.cells)}}}
 }}
 """
         solver_section = f"""solver
@@ -179,13 +188,7 @@ serializer
     int-properties = {{{self.digits}}}
     str-properties = {{"frames", "save", "test"}}
 }}
-{self.driver or driver_section}{self.solver or solver_section}grid
-{{
-    class = "CartesianLinear"
-    properties = {{{numbers(self.lengths)}}}
-    int-properties = {{{numbers(self.cells)}}}
-}}
-"""
+{self.driver or driver_section}{self.solver or solver_section}{self.grid or grid_section}"""
         return head + "".join([*(body.section() for body in self.bodies), *self.contacts])
 
     def write(self, folder: Path) -> Path:

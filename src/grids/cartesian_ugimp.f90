@@ -1,0 +1,64 @@
+!> Averaged linear functions on a box with walls.
+module mpm_cartesian_ugimp
+  use mpm_cartesian_grid, only: cartesian_grid_t
+  use mpm_cartesian_text, only: add_cells, add_lengths, add_notes, add_origin
+  use mpm_description, only: description_t
+  use mpm_errors, only: error_t
+  use mpm_kinds, only: wp
+  use mpm_kinematics, only: kinematics_t
+  use mpm_properties, only: properties_t
+  use mpm_stencil, only: basis_box
+  implicit none
+  private
+  public :: cartesian_ugimp_t
+
+  !> Averaged linear functions on a box with walls.
+  type, extends(cartesian_grid_t) :: cartesian_ugimp_t
+  contains
+    procedure, nopass :: describe => cartesian_ugimp_describe
+    procedure :: init => cartesian_ugimp_init
+  end type cartesian_ugimp_t
+
+contains
+
+  !> Purpose and properties of the class.
+  subroutine cartesian_ugimp_describe(description)
+    !> The description.
+    type(description_t), intent(out) :: description
+    character(*), parameter :: nl = new_line('a')
+
+    call description%init('grid', 'CartesianUGIMP', &
+                          'Linear functions averaged over a box of the width of a point (uGIMP), &
+                          &on equal cells of a box.', &
+                          'Bardenhagen and Kober, CMES 5 (2004) 477-495', &
+                          'grid'//nl//'{'//nl//'    class = "CartesianUGIMP"'//nl// &
+                          '    properties = {1.0, 1.0, 0.0125}   # Lx, Ly, l'//nl// &
+                          '    int-properties = {20, 20}         # Nx, Ny'//nl//'}')
+    call add_lengths(description)
+    call description%add_real('l', 'm', 'half of the width of a point, at most half of a cell', &
+                              above=0.0_wp)
+    call add_origin(description)
+    call add_cells(description)
+    call description%add_note('The box keeps its width whatever becomes of the points. Points in a &
+                              &row of n per cell have l = h/(2 n); l = h/2 gives quadratic &
+                              &B-splines.')
+    call add_notes(description, smooth=.true., periodic=.false.)
+  end subroutine cartesian_ugimp_describe
+
+  !> Build the grid from its properties.
+  subroutine cartesian_ugimp_init(self, kin, properties, error)
+    !> The grid.
+    class(cartesian_ugimp_t), intent(inout) :: self
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Checked properties.
+    type(properties_t), intent(in) :: properties
+    !> Sizes that do not fit together.
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%init_box(kin, properties, error)
+    if (allocated(error)) return
+    call self%init_basis(basis_box, properties, error)
+  end subroutine cartesian_ugimp_init
+
+end module mpm_cartesian_ugimp
