@@ -217,7 +217,9 @@ time.
 
 **Refinement**: the loss of *total* energy goes to 0, with order 1 or better. The *kinetic* energy
 at $t = 3$ does not rise with refinement, because the discs vibrate after the collision and meet
-later. Strain energy is $\tfrac12 \sigma : C^{-1} : \sigma\, V$.
+later. Strain energy is $\tfrac12 \sigma : C^{-1} : \sigma\, V$. With the linear functions edges
+that hardly move can gain energy (stress updated last), so that they run at the published
+resolution only, with a small step.
 """,
     source="Sulsky, Chen and Schreyer, CMAME 118 (1994) 179-196, problem only; course: stored "
     "results of a public MATLAB code (mpmat).",

@@ -21,9 +21,9 @@ REASON = re.compile(
 
 
 def limit(p: Parameters) -> float:
-    """Return the stability limit for n points a cell and direction."""
+    """Return the stability limit for n points a cell and direction, not for one with hats."""
     courant = 1.0 / np.sqrt(5.0 / 3.0 + 1.0 / (3.0 * p.ppc**2))
-    return float(courant * SPACING / (WAVE_SPEED * np.sqrt(DIM[p.sim_type])))
+    return float(courant * SPACING / WAVE_SPEED)
 
 
 def scene(p: Parameters) -> Scene:
@@ -77,7 +77,7 @@ def judge(r: Results) -> list[Finding]:
         step.reason = "exponential growth"
         frames = Finding(f"frames left behind{end}", m["frames"], 1.0, 1.0, 1.0)
         frames.reason = "frames written before are whole"
-        law = "C h/(c sqrt(d)), C = 1/sqrt(5/3 + 1/(3 n^2)); six digits"
+        law = "C h/c, C = 1/sqrt(5/3 + 1/(3 n^2)); six digits"
         findings += [
             status,
             near(f"stable step in the warning{end}", m["warned"], limit(p), 1e-4, law),
@@ -92,11 +92,11 @@ CASE = Case(
     family="Hard cases",
     title="A time step above the stability limit",
     statement=r"""
-A free block moves a little, and the time step is several times the stability limit $C h/(c
-\sqrt{d})$, $C = 1/\sqrt{5/3 + 1/(3n^2)}$, with $d$ directions. The program must warn before the
-first step, end with exit status 3, name the point and what happened to it, and tell *the stable
-step as the cause*, which must be the formula's. (Where between stable and unstable the limit lies
-is the subject of the scan of the time step.)
+A free block moves a little, and the time step is several times the stability limit $C h/c$, $C =
+1/\sqrt{5/3 + 1/(3n^2)}$. The program must warn before the first step, end with exit status 3,
+name the point and what happened to it, and tell *the stable step as the cause*, which must be the
+formula's. (Where between stable and unstable the limit lies is the subject of the scan of the
+time step.)
 """,
     source="Dispersion relation of the scheme, derived here",
     scene=scene,

@@ -72,13 +72,16 @@ def judge(r: Results) -> list[Finding]:
         return found + fitted(r, "stress_l2", 0.8, 1.15, reason, first=48)
     if amplitude != 0.1:
         return found
-    if r.first.mapping == "linear":
+    linear = r.first.mapping == "linear"
+    if r.first.ppc == 2 and linear:
         reason = "independent program, which turns stresses without growth; 10 %"
         found += tabled(r, "u_l2", LINEAR, amplitude, 0.1, reason)
+    elif r.first.ppc == 2:
+        reason = "fixed boxes: between linear functions and boxes that deform; 15 %"
+        found += between(r, "u_l2", (DEFORMED, LINEAR), amplitude, 0.15, reason)
+    if linear:
         reason = "noise where points cross cells takes over: the order falls to 0 and below"
         return found + fitted(r, "u_l2", -1.5, 0.8, reason, first=40)
-    reason = "fixed boxes: between linear functions and boxes that deform with the points; 15 %"
-    found += between(r, "u_l2", (DEFORMED, LINEAR), amplitude, 0.15, reason)
     reason = "noise of fixed boxes comes later: an order of 1 or more up to 80 cells"
     return found + fitted(r, "u_l2", 0.9, 2.2, reason, last=80)
 
