@@ -475,7 +475,12 @@ def judge_implicit(run: Collision, m: Measures, label: str) -> list[Finding]:
         bound = PROTOTYPE.get(p.cells)
         if bound is not None:
             findings.append(
-                below(f"1 - e, {label}", m["defect"], 1.3 * bound, "1.3 times the value of a small separate code")
+                below(
+                    f"1 - e, {label}",
+                    m["defect"],
+                    1.3 * bound,
+                    "1.3 times the value of a small separate code",
+                )
             )
     return findings
 
