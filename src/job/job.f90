@@ -111,6 +111,15 @@ contains
       if (allocated(points%load)) then
         bits = bits + storage_size(points%load, lp)*size(points%load, kind=lp)
       end if
+      if (allocated(points%affine)) then
+        bits = bits + storage_size(points%affine, lp)*size(points%affine, kind=lp)
+      end if
+      if (allocated(nodes%gain)) then
+        bits = bits + storage_size(nodes%gain, lp)*size(nodes%gain, kind=lp)
+      end if
+      if (allocated(nodes%remapped)) then
+        bits = bits + storage_size(nodes%remapped, lp)*size(nodes%remapped, kind=lp)
+      end if
       bits = bits + storage_size(points%id, lp)*3_lp*size(points%id, kind=lp)
       bits = bits + storage_size(nodes%mass, lp)* &
              (size(nodes%mass, kind=lp) + size(nodes%momentum, kind=lp) &

@@ -5,7 +5,7 @@ module mpm_advance
   use mpm_stencil, only: axis_fraction, block_size, stencil_t
   implicit none
   private
-  public :: advance_points, exponential, trace_of_gradient
+  public :: advance_points, exponential, trace_of_gradient, turn_basis
 
 contains
 

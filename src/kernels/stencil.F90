@@ -36,6 +36,8 @@ module mpm_stencil
     integer :: width = 2
     !> Corner-averaged instead of plain hats.
     logical :: averaged = .false.
+    !> Slopes of the best affine fit in place of the functions' derivatives.
+    logical :: fitted = .false.
     !> Lower corner of the grid. [m]
     real(wp) :: lower(3) = 0.0_wp
     !> Spacing of the nodes. [m]
@@ -156,7 +158,46 @@ contains
     case (34)
       call weights_3d_4(stencil, n, x, extent, base, w, dw)
     end select
+    if (stencil%fitted .and. stencil%width > 2) then
+      call fitted_slopes(stencil, stencil%width, stencil%dim, n, x, base, w, dw)
+    end if
   end subroutine stencil_weights
+
+  !> Replace derivatives by the weights of the best affine fit, w r/sum(w r**2) in each direction.
+  !!
+  !! r is the distance of a node from the weighted mean of the nodes, which is the point itself for
+  !! functions that reproduce positions. Of hats the fit is the derivative, which stays where the
+  !! point is so close to a node that the quotient is of roundings.
+  pure subroutine fitted_slopes(stencil, width, dim, n, x, base, w, dw)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Nodes per direction.
+    integer, intent(in) :: width
+    !> Dimensions.
+    integer, intent(in) :: dim
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(dim, n)
+    !> First nodes. (3, n)
+    integer, intent(in) :: base(3, n)
+    !> Values. (width, dim, n)
+    real(wp), intent(in) :: w(width, dim, n)
+    !> Derivatives, then slopes of the fit. [1/m] (width, dim, n)
+    real(wp), intent(inout) :: dw(width, dim, n)
+    real(wp), parameter :: least = 1.0e-3_wp
+    real(wp) :: r(width), spread
+    integer :: p, d, j
+
+    do p = 1, n
+      do d = 1, dim
+        r = [(real(base(d, p) + j - 1, wp), j=1, width)] - (x(d, p) - stencil%lower(d))/stencil%h(d)
+        r = r - sum(w(:, d, p)*r)
+        spread = sum(w(:, d, p)*r**2)
+        if (spread > least) dw(:, d, p) = w(:, d, p)*r/(spread*stencil%h(d))
+      end do
+    end do
+  end subroutine fitted_slopes
 
   !> Keep a local coordinate of a cell a few roundings away from both its nodes.
   elemental function off_node(xi) result(inside)

@@ -60,6 +60,9 @@ module mpm_points
     !> Acceleration by a body force that differs from point to point; not allocated when there is
     !> none. [m/s2] (nvel, n)
     real(wp), allocatable :: load(:, :)
+    !> Gradient of the point's own field of velocities, components as the first of the velocity
+    !! gradient; not allocated unless the solver maps such fields. [1/s] (nvel dim, n)
+    real(wp), allocatable :: affine(:, :)
     !> The basis between points and nodes.
     type(stencil_t) :: stencil
     !> Key of the stencil, or `outside`. (n)
@@ -243,6 +246,7 @@ contains
     call permute_vectors(order, self%stress)
     if (allocated(self%gradient)) call permute_vectors(order, self%gradient)
     if (allocated(self%load)) call permute_vectors(order, self%load)
+    if (allocated(self%affine)) call permute_vectors(order, self%affine)
   end subroutine points_permute
 
   !> Permute integers.

@@ -8,12 +8,15 @@ module mpm_explicit_steps
   use mpm_kinematics, only: type_axisymmetric
   use mpm_material, only: material_t
   use mpm_model, only: model_t
+  use mpm_momentum, only: add_momentum
   use mpm_nodes, only: nodes_t
+  use mpm_point_blocks, only: sweep_block
   use mpm_points, only: points_t
   use mpm_scatter, only: scatter
   use mpm_sort, only: base_bounds
   use mpm_stencil, only: block_size, stencil_keys, stencil_t
   use mpm_strings, only: to_text
+  use mpm_sweep, only: sweep_t
   use mpm_threads, only: useful_threads
   use mpm_window, only: window_t
   implicit none
@@ -26,7 +29,7 @@ module mpm_explicit_steps
 contains
 
   !> Choose the basis of a body and sort its points by cell.
-  subroutine locate_points(model, body, averaged, error)
+  subroutine locate_points(model, body, averaged, error, fitted)
     !> The model.
     type(model_t), intent(inout) :: model
     !> Position of the body in the model's list.
@@ -35,6 +38,8 @@ contains
     logical, intent(in) :: averaged
     !> Points that the basis can't take.
     type(error_t), allocatable, intent(out) :: error
+    !> Slopes of the best affine fit in place of the functions' derivatives; not when left out.
+    logical, intent(in), optional :: fitted
     type(stencil_t) :: stencil
 
     associate (item => model%bodies(body)%body)
@@ -45,6 +50,7 @@ contains
         error%line = item%points%widest_line
         return
       end if
+      if (present(fitted)) stencil%fitted = fitted
       call item%points%locate(stencil)
     end associate
   end subroutine locate_points
@@ -86,6 +92,12 @@ contains
                    points%extent(:n), points%mass(:n), points%volume(:n), &
                    points%velocity(:, :n), points%stress(:, :n), nodes%mass, &
                    nodes%momentum, nodes%force)
+      if (allocated(points%affine)) then
+        call add_momentum(points%kin, points%stencil, window, useful_threads(threads, n), n, &
+                          points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
+                          points%extent(:n), points%mass(:n), nodes%momentum, &
+                          affine=points%affine(:, :n))
+      end if
       call finish_mapping(points%kin%nvel, window%size(), threads, points%mass_cutoff, &
                           points%body_force, nodes%mass, nodes%momentum, nodes%force, &
                           nodes%velocity, nodes%increment)
@@ -224,7 +236,7 @@ contains
   end subroutine advance_nodes
 
   !> Advance the points of a body with the grid, then their stress.
-  subroutine update_points(model, body, dt, keep_gradient, error)
+  subroutine update_points(model, body, dt, keep_gradient, error, sweep)
     !> The model.
     type(model_t), intent(inout) :: model
     !> Position of the body in the model's list.
@@ -235,6 +247,8 @@ contains
     logical, intent(in) :: keep_gradient
     !> A point is not finite, moved more than a cell or lost its volume.
     type(error_t), allocatable, intent(out) :: error
+    !> What to do; when left out all of it, by FLIP with the stress updated last.
+    type(sweep_t), intent(in), optional :: sweep
     integer, allocatable :: slot(:), cause(:)
     integer :: blocks, first_bad, i
 
@@ -244,10 +258,10 @@ contains
       allocate (slot(blocks), cause(blocks))
       if (allocated(item%material)) then
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
-                          keep_gradient, slot, cause, item%material)
+                          keep_gradient, slot, cause, item%material, sweep)
       else
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
-                          keep_gradient, slot, cause)
+                          keep_gradient, slot, cause, sweep=sweep)
       end if
       first_bad = 0
       do i = 1, blocks
@@ -262,7 +276,8 @@ contains
   end subroutine update_points
 
   !> Visit the points of a body in blocks on all threads.
-  subroutine sweep_blocks(points, nodes, stencil, threads, dt, keep_gradient, slot, cause, material)
+  subroutine sweep_blocks(points, nodes, stencil, threads, dt, keep_gradient, slot, cause, material, &
+                          sweep)
     !> The points.
     class(points_t), intent(inout) :: points
     !> Their nodes, after the grid update.
@@ -281,6 +296,8 @@ contains
     integer, intent(out) :: cause(:)
     !> Constitutive law.
     class(material_t), intent(in), optional :: material
+    !> What to do.
+    type(sweep_t), intent(in), optional :: sweep
     integer :: block, lo(3), hi(3), block_lo(3), block_hi(3), n_changed, changed
 
     lo = huge(1)
@@ -288,17 +305,20 @@ contains
     n_changed = 0
     !$omp parallel do default(none) schedule(static) &
     !$omp num_threads(useful_threads(threads, points%n_inside)) &
-    !$omp shared(points, nodes, stencil, dt, keep_gradient, slot, cause, material) &
+    !$omp shared(points, nodes, stencil, dt, keep_gradient, slot, cause, material, sweep) &
     !$omp private(block, block_lo, block_hi, changed) &
     !$omp reduction(min:lo) reduction(max:hi) reduction(+:n_changed)
     do block = 1, size(slot)
       call update_block(points, nodes, stencil, dt, keep_gradient, block, slot(block), &
-                        cause(block), block_lo, block_hi, changed, material)
+                        cause(block), block_lo, block_hi, changed, material, sweep)
       lo = min(lo, block_lo)
       hi = max(hi, block_hi)
       n_changed = n_changed + changed
     end do
     !$omp end parallel do
+    if (present(sweep)) then
+      if (.not. sweep%drift) return
+    end if
     points%lo = lo
     points%hi = hi
     points%n_changed = points%n_changed + n_changed
@@ -307,7 +327,7 @@ contains
 
   !> Interpolate to one block of points, move them, update their stress and their keys.
   subroutine update_block(points, nodes, stencil, dt, keep_gradient, block, slot, cause, lo, hi, &
-                          changed, material)
+                          changed, material, sweep)
     !> The points; the blocks of different threads do not overlap.
     class(points_t), intent(inout) :: points
     !> Their nodes, after the grid update.
@@ -332,19 +352,32 @@ contains
     integer, intent(out) :: changed
     !> Constitutive law.
     class(material_t), intent(in), optional :: material
+    !> What to do.
+    type(sweep_t), intent(in), optional :: sweep
     real(wp) :: velocity(3*block_size), increment(3*block_size), gradient(9*block_size)
     integer :: key(block_size), a, b, n
+    logical :: strain, drift
 
+    strain = .true.
+    drift = .true.
+    if (present(sweep)) then
+      strain = sweep%strain
+      drift = sweep%drift
+    end if
     a = (block - 1)*block_size + 1
     b = min(block*block_size, points%n_inside)
     n = b - a + 1
     associate (kin => points%kin)
-      call g2p(kin, stencil, nodes%window, n, points%key(a:b), points%x(:, a:b), &
-               points%extent(a:b), nodes%velocity, nodes%increment, velocity, increment, gradient)
-      call advance_points(kin, stencil, n, dt, velocity, increment, gradient, points%x(:, a:b), &
-                          points%displacement(:, a:b), points%velocity(:, a:b), &
-                          points%volume(a:b), slot)
-      if (keep_gradient) then
+      if (present(sweep)) then
+        call sweep_block(points, nodes, stencil, sweep, dt, a, b, gradient, slot)
+      else
+        call g2p(kin, stencil, nodes%window, n, points%key(a:b), points%x(:, a:b), &
+                 points%extent(a:b), nodes%velocity, nodes%increment, velocity, increment, gradient)
+        call advance_points(kin, stencil, n, dt, velocity, increment, gradient, points%x(:, a:b), &
+                            points%displacement(:, a:b), points%velocity(:, a:b), &
+                            points%volume(a:b), slot)
+      end if
+      if (keep_gradient .and. strain) then
         points%gradient(:, a:b) = reshape(gradient(:kin%ngrad*n), [kin%ngrad, n])
       end if
     end associate
@@ -354,15 +387,17 @@ contains
     changed = 0
     if (slot == 0) then
       cause = went_well
-      if (present(material)) then
+      if (present(material) .and. strain) then
         call material%update_stress(n, dt, gradient, points%mass(a:b), points%volume(a:b), &
                                     points%stress(:, a:b), slot)
         if (slot > 0) cause = bad_stress
       end if
-      call stencil_keys(stencil, n, points%x(:, a:b), points%extent(a:b), key)
-      changed = count(key(:n) /= points%key(a:b))
-      points%key(a:b) = key(:n)
-      call base_bounds(stencil, n, key, lo, hi)
+      if (drift) then
+        call stencil_keys(stencil, n, points%x(:, a:b), points%extent(a:b), key)
+        changed = count(key(:n) /= points%key(a:b))
+        points%key(a:b) = key(:n)
+        call base_bounds(stencil, n, key, lo, hi)
+      end if
     end if
     if (slot > 0) slot = slot + a - 1
   end subroutine update_block
@@ -438,7 +473,15 @@ contains
   !! direction the hats give K = 4 s/h**2 and mu = 1 - (2/3 + 1/(3 n**2)) s, s = sin**2(k h/2); the
   !! worst mode is s = 1: c dt/h <= 1/sqrt(5/3 + 1/(3 n**2)). In several dimensions K is at most the
   !! sum over the directions, hence the safe bound c dt sqrt(sum 1/h_d**2) <= the same number.
-  pure subroutine body_stable_step(spacing, body, wave_speed, limit)
+  !!
+  !! When the gradient is formed from velocities that went through the points (MUSL, USF), stability
+  !! needs mu c**2 K dt**2 <= 4, with FLIP. mu = 1 - g s, where g = 4 mean(xi (1 - xi)) is least,
+  !! g = 2/3 (1 - 1/n**2), for points on node lines: C**2 = 4 g, or 1/(1 - g) for g < 1/2. Other
+  !! transfers have mu c**2 K dt**2 <= 2 (1 + nu), mu <= nu <= 1, or APIC 2 (1 + nu) with mu = nu,
+  !! for which C = 1, c**2 K dt**2 <= 4, suffices. In several dimensions mu is the product over the
+  !! directions, and the sum over them of K_d mu_d, each with mu_e**2 of the others, is at most the
+  !! sum of K_d mu_d.
+  pure subroutine body_stable_step(spacing, body, wave_speed, limit, filtered, flip)
     !> Spacing of the grid. [m]
     real(wp), intent(in) :: spacing(3)
     !> The body.
@@ -447,6 +490,10 @@ contains
     real(wp), intent(out) :: wave_speed
     !> Largest stable step; huge when nothing bounds it. [s]
     real(wp), intent(out) :: limit
+    !> Gradients are formed from velocities that went through the points; not when left out.
+    logical, intent(in), optional :: filtered
+    !> They did so by FLIP; so they do when left out.
+    logical, intent(in), optional :: flip
     integer :: n
 
     wave_speed = 0.0_wp
@@ -455,18 +502,22 @@ contains
     if (n == 0 .or. .not. allocated(body%material)) return
     wave_speed = body%material%wave_speed(n, body%points%mass(:n), body%points%volume(:n), &
                                           body%points%stress(:, :n))
-    if (wave_speed > 0.0_wp) limit = stable_length(spacing, body)/wave_speed
+    if (wave_speed > 0.0_wp) limit = stable_length(spacing, body, filtered, flip)/wave_speed
   end subroutine body_stable_step
 
   !> Largest stable c dt of a body, from the spacing of the grid and the points in a cell.
-  pure function stable_length(spacing, body) result(length)
+  pure function stable_length(spacing, body, filtered, flip) result(length)
     !> Spacing of the grid. [m]
     real(wp), intent(in) :: spacing(3)
     !> The body.
     class(body_t), intent(in) :: body
+    !> Gradients are formed from velocities that went through the points; not when left out.
+    logical, intent(in), optional :: filtered
+    !> They did so by FLIP; so they do when left out.
+    logical, intent(in), optional :: flip
     !> Wave speed times stable step. [m]
     real(wp) :: length
-    real(wp) :: per_cell
+    real(wp) :: per_cell, inverse, g
     integer :: n, dim
 
     n = body%points%n_inside
@@ -475,8 +526,17 @@ contains
     per_cell = (product(spacing(:dim))*real(n, wp)/sum((2.0_wp*body%points%extent(:n))**dim)) &
                **(1.0_wp/real(dim, wp))
     per_cell = max(1.0_wp, per_cell)
-    length = 1.0_wp/(sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))* &
-                     sqrt(sum(1.0_wp/spacing(:dim)**2)))
+    inverse = sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))
+    if (present(filtered)) then
+      if (filtered) then
+        g = 2.0_wp/3.0_wp*(1.0_wp - 1.0_wp/per_cell**2)
+        inverse = merge(0.5_wp/sqrt(max(g, 0.5_wp)), sqrt(1.0_wp - g), g > 0.5_wp)
+        if (present(flip)) then
+          if (.not. flip) inverse = 1.0_wp
+        end if
+      end if
+    end if
+    length = 1.0_wp/(inverse*sqrt(sum(1.0_wp/spacing(:dim)**2)))
   end function stable_length
 
 end module mpm_explicit_steps
