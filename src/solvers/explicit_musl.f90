@@ -15,7 +15,6 @@ module mpm_explicit_musl
 
   !> Symplectic Euler steps; the stress follows from the new velocities of the points.
   type, extends(explicit_solver_t) :: explicit_musl_t
-    integer :: mode = 0
   contains
     procedure, nopass :: describe => explicit_musl_describe
     procedure :: step => explicit_musl_step
@@ -55,6 +54,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: i
 
+    call self%mark_contacts(model)
     call self%map(model, error)
     if (allocated(error)) return
     call self%push(model, dt)
@@ -63,7 +63,12 @@ contains
       call update_points(model, i, dt, .false., error, &
                          sweep_t(drift=.false., strain=.false., kept=self%transfer%kept))
       if (allocated(error)) return
-      call map_again(model%bodies(i)%body, model%threads)
+      associate (body => model%bodies(i)%body)
+        call map_again(body, model%threads)
+        if (allocated(self%marks)) then
+          call self%marks(i)%impose(body%nodes%window, body%nodes%mass, body%nodes%remapped)
+        end if
+      end associate
     end do
     do i = 1, size(model%bodies)
       if (.not. model%bodies(i)%body%active) cycle

@@ -1,6 +1,7 @@
 !> What the explicit solvers share: properties, start, and the parts of a step on the grid.
 module mpm_explicit_solver
   use mpm_advance, only: turn_basis
+  use mpm_contact_marks, only: contact_marks_t
   use mpm_description, only: description_t
   use mpm_errors, only: err_input, error_t
   use mpm_explicit_steps, only: locate_points, map_to_nodes, update_nodes
@@ -26,9 +27,13 @@ module mpm_explicit_solver
     logical :: staggered = .false.
     !> How velocities go from the points to the grid and back.
     type(transfer_t) :: transfer
+    !> Where contacts act, body by body; not allocated unless a step asks. (bodies)
+    type(contact_marks_t), allocatable :: marks(:)
   contains
     procedure :: init => explicit_solver_init
     procedure :: start => explicit_solver_start
+    !> Ask for the marks of contacts.
+    procedure :: mark_contacts => explicit_solver_mark_contacts
     !> Map all bodies to their nodes.
     procedure :: map => explicit_solver_map
     !> Add the forces of contacts and walls, and update all nodes.
@@ -135,6 +140,17 @@ contains
     end associate
   end subroutine move_back
 
+  !> Ask for the marks of contacts, if there are contacts.
+  subroutine explicit_solver_mark_contacts(self, model)
+    !> The solver.
+    class(explicit_solver_t), intent(inout) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
+
+    if (size(model%contacts) == 0 .or. allocated(self%marks)) return
+    allocate (self%marks(size(model%bodies)))
+  end subroutine explicit_solver_mark_contacts
+
   !> Map all bodies to their nodes.
   subroutine explicit_solver_map(self, model, error)
     !> The solver.
@@ -156,7 +172,7 @@ contains
   !> Add the forces of contacts and walls, and update all nodes.
   subroutine explicit_solver_push(self, model, dt)
     !> The solver.
-    class(explicit_solver_t), intent(in) :: self
+    class(explicit_solver_t), intent(inout) :: self
     !> The model, mapped.
     type(model_t), intent(inout) :: model
     !> Length of the step. [s]
@@ -165,7 +181,9 @@ contains
 
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
-        if (.not. body%active .or. .not. allocated(body%boundary)) cycle
+        if (.not. body%active) cycle
+        if (allocated(self%marks)) call self%marks(i)%begin(body%nodes)
+        if (.not. allocated(body%boundary)) cycle
         call body%boundary%generate(model%grid, body%points, body%nodes)
       end associate
     end do
@@ -176,10 +194,12 @@ contains
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
         if (.not. body%active) cycle
+        if (allocated(self%marks)) call self%marks(i)%mark(body%nodes)
         if (allocated(body%boundary)) then
           call body%boundary%apply(model%grid, body%points, body%nodes, dt)
         end if
         call update_nodes(body%nodes, dt, model%threads)
+        if (allocated(self%marks)) call self%marks(i)%keep(body%nodes)
         call self%transfer%finish(body%nodes, dt, model%threads)
       end associate
     end do

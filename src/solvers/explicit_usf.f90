@@ -53,12 +53,16 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: i
 
+    call self%mark_contacts(model)
     call self%map(model, error)
     if (allocated(error)) return
     if (.not. self%staggered .or. model%step > 0_lp) then
       do i = 1, size(model%bodies)
         associate (body => model%bodies(i)%body)
           if (.not. body%active) cycle
+          if (allocated(self%marks)) then
+            call self%marks(i)%impose(body%nodes%window, body%nodes%mass, body%nodes%velocity)
+          end if
           if (allocated(body%boundary)) then
             call body%boundary%prescribe(body%nodes%window, .false., body%nodes%velocity)
           end if
