@@ -8,7 +8,7 @@ module mpm_explicit_solver
   use mpm_kinds, only: wp
   use mpm_kinematics, only: type_axisymmetric
   use mpm_model, only: model_t
-  use mpm_points, only: points_t
+  use mpm_point_blocks, only: fit_points
   use mpm_properties, only: properties_t
   use mpm_solver, only: solver_t
   use mpm_stencil, only: axis_fraction
@@ -108,6 +108,16 @@ contains
       call self%push(model, model%dt)
       do i = 1, size(model%bodies)
         if (model%bodies(i)%body%active) call move_back(model, i, 0.5_wp*model%dt)
+      end do
+      call self%map(model, error)
+      if (allocated(error)) return
+    end if
+    if (self%transfer%affine) then
+      ! The first mapping had no affine fields; they begin as those that fit its velocities.
+      do i = 1, size(model%bodies)
+        associate (body => model%bodies(i)%body)
+          if (body%active) call fit_points(body%points, body%nodes, model%threads)
+        end associate
       end do
       call self%map(model, error)
       if (allocated(error)) return

@@ -8,9 +8,10 @@ module mpm_point_blocks
   use mpm_points, only: points_t
   use mpm_stencil, only: axis_fraction, block_size, stencil_t
   use mpm_sweep, only: sweep_t
+  use mpm_threads, only: useful_threads
   implicit none
   private
-  public :: sweep_block
+  public :: fit_points, sweep_block
 
 contains
 
@@ -102,6 +103,27 @@ contains
       end if
     end associate
   end subroutine interpolate
+
+  !> Fit affine fields of velocity to the nodes of all points of a body.
+  subroutine fit_points(points, nodes, threads)
+    !> The points.
+    class(points_t), intent(inout) :: points
+    !> Their nodes, with velocities.
+    class(nodes_t), intent(in) :: nodes
+    !> Number of threads.
+    integer, intent(in) :: threads
+    real(wp) :: velocity(3*block_size), gain(3*block_size), gradient(9*block_size)
+    integer :: a, b
+
+    !$omp parallel do default(none) schedule(static) private(b, velocity, gain, gradient) &
+    !$omp num_threads(useful_threads(threads, points%n_inside)) shared(points, nodes)
+    do a = 1, points%n_inside, block_size
+      b = min(a + block_size - 1, points%n_inside)
+      call interpolate(points, nodes, points%stencil, sweep_t(), a, b, velocity, gain, gradient)
+      call fit_velocities(points, nodes, points%stencil, a, b, gradient)
+    end do
+    !$omp end parallel do
+  end subroutine fit_points
 
   !> Fit affine fields of velocity to the nodes of points: C_p = sum_i v_i (x_i - x_p) w_i/D.
   subroutine fit_velocities(points, nodes, stencil, a, b, gradient)

@@ -123,7 +123,7 @@ contains
     is_flip = self%kept >= 1.0_wp
   end function transfer_is_flip
 
-  !> Prepare a body before the first mapping: affine fields begin at 0.
+  !> Prepare a body before the first mapping: room for affine fields.
   subroutine transfer_start(self, points)
     !> The transfer.
     class(transfer_t), intent(in) :: self
