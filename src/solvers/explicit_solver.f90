@@ -116,7 +116,11 @@ contains
       ! The first mapping had no affine fields; they begin as those that fit its velocities.
       do i = 1, size(model%bodies)
         associate (body => model%bodies(i)%body)
-          if (body%active) call fit_points(body%points, body%nodes, model%threads)
+          if (.not. body%active) cycle
+          if (allocated(body%boundary)) then
+            call body%boundary%prescribe(body%nodes%window, .false., body%nodes%velocity)
+          end if
+          call fit_points(body%points, body%nodes, model%threads)
         end associate
       end do
       call self%map(model, error)
