@@ -139,6 +139,9 @@ class Scene:
     #: Flags of the solver: corner-averaged mapping, implicit contact.
     cpdi: int = 1
     implicit_contact: int = 1
+    solver: str = "ExplicitUSL"
+    #: Lines of the section solver beside its flags.
+    solver_lines: str = ""
     #: Sections after the bodies.
     contacts: Sequence[str] = field(default_factory=list)
     #: Lines of the section job.
@@ -173,8 +176,9 @@ serializer
 }}
 {self.driver or driver_section}solver
 {{
-    class = "ExplicitUSL"
+    class = "{self.solver}"
     int-properties = {{{self.cpdi}, {self.implicit_contact}}}
+    {self.solver_lines}
 }}
 grid
 {{
