@@ -48,20 +48,24 @@ contains
     real(wp), intent(in), optional :: velocity(kin%nvel, n)
     !> Gradients of the points' own velocities. [1/s] (nvel dim, n)
     real(wp), intent(in), optional :: affine(kin%nvel*kin%dim, n)
+    type(stencil_t) :: values
     integer :: rows, thickness, slabs, slab, colour, first, last
 
+    ! Slopes are not used.
+    values = stencil
+    values%fitted = .false.
     rows = ubound(row_offset, 1)
     thickness = max(stencil%width - 1, int((int(slab_points, lp)*rows)/max(n, 1)))
     slabs = (rows + thickness - 1)/thickness
     !$omp parallel default(none) num_threads(threads) &
-    !$omp shared(kin, stencil, window, order, row_offset, key, x, extent, mass, velocity, affine) &
+    !$omp shared(kin, values, window, order, row_offset, key, x, extent, mass, velocity, affine) &
     !$omp shared(node_momentum, rows, thickness, slabs) private(slab, colour, first, last)
     do colour = 0, 1
       !$omp do schedule(dynamic)
       do slab = colour, slabs - 1, 2
         first = row_offset(slab*thickness)
         last = row_offset(min(rows, (slab + 1)*thickness))
-        call add_range(kin, stencil, window, last - first, order(first + 1:last), key, x, extent, &
+        call add_range(kin, values, window, last - first, order(first + 1:last), key, x, extent, &
                        mass, node_momentum, velocity, affine)
       end do
       !$omp end do

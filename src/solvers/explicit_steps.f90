@@ -276,8 +276,8 @@ contains
   end subroutine update_points
 
   !> Visit the points of a body in blocks on all threads.
-  subroutine sweep_blocks(points, nodes, stencil, threads, dt, keep_gradient, slot, cause, material, &
-                          sweep)
+  subroutine sweep_blocks(points, nodes, stencil, threads, dt, keep_gradient, slot, cause, &
+                          material, sweep)
     !> The points.
     class(points_t), intent(inout) :: points
     !> Their nodes, after the grid update.

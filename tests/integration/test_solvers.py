@@ -107,7 +107,9 @@ def test_collision(mpm3d: Run, tmp_path: Path, transfer: str, solver: str) -> No
         files = sorted((tmp_path / "frames").iterdir())
         digests.append(hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest())
     assert digests[0] == digests[1]
-    frames = [read_series(tmp_path / "frames", "fpd", i, n) for i, n in enumerate(["left", "right"])]
+    frames = [
+        read_series(tmp_path / "frames", "fpd", i, name) for i, name in enumerate(["left", "right"])
+    ]
     start, end = (
         sum(series[i].fields["momentum"].sum(axis=0) for series in frames) for i in (0, -1)
     )
