@@ -146,9 +146,10 @@ contains
     real(wp), allocatable :: rest(:, :), mapped(:, :), velocity(:, :)
     integer :: j, n
 
-    if (self%order == 1 .or. body%points%n_inside == 0) return
-    n = body%nodes%window%size()
+    if (self%order == 1) return
     call fit_length(body%nodes, body%nodes%gain)
+    if (body%points%n_inside == 0) return
+    n = body%nodes%window%size()
     allocate (rest, source=body%nodes%velocity(:, :n))
     allocate (mapped(size(rest, 1), n), velocity(size(rest, 1), body%points%n_inside))
     call hold(body, .false., rest)
