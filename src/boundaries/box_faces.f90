@@ -44,6 +44,8 @@ module mpm_box_faces
     procedure :: part => box_faces_part
     !> Whether a node is on a face.
     procedure :: holds => box_faces_holds
+    !> Whether a face is the axis r = 0 of TYPE 4.
+    procedure :: is_axis => box_faces_is_axis
     !> First face that a node is on.
     procedure :: first => box_faces_first
     !> Integral of a node's function over a face.
@@ -139,6 +141,19 @@ contains
     axis = axis_of(face)
     holds = node(axis) == merge(0, self%last(axis), is_lower(face))
   end function box_faces_holds
+
+  !> Whether a face is the axis r = 0 of TYPE 4.
+  pure function box_faces_is_axis(self, face) result(is_axis)
+    !> The faces.
+    class(box_faces_t), intent(in) :: self
+    !> Face, 1 to `n`.
+    integer, intent(in) :: face
+    !> Whether it is.
+    logical :: is_axis
+
+    is_axis = self%kin%sim_type == type_axisymmetric .and. face == 1 &
+              .and. self%lower(1) <= 0.0_wp
+  end function box_faces_is_axis
 
   !> First face that a node is on, by which nodes of several faces are visited once.
   pure function box_faces_first(self, node) result(face)

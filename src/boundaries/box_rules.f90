@@ -48,10 +48,53 @@ contains
         rules(axis) = side*walls(face)%code
       end select
     end do
+    if (is_smooth_axis(faces, walls, node)) rules([1, 3]) = fixed
   end function node_rules
 
-  !> Apply the rules of one node, component by component.
+  !> Whether a node is on the axis of TYPE 4 and the wall there is smooth.
+  !!
+  !! Neither radial velocity nor swirl can differ from 0 there, whatever other faces ask for.
+  pure function is_smooth_axis(faces, walls, node) result(is_axis)
+    !> The faces of the grid.
+    type(box_faces_t), intent(in) :: faces
+    !> Their walls. (faces%n)
+    type(box_wall_t), intent(in) :: walls(:)
+    !> Grid indices, from 0.
+    integer, intent(in) :: node(3)
+    !> Whether it is.
+    logical :: is_axis
+
+    is_axis = faces%is_axis(1) .and. node(1) == 0 .and. walls(1)%code == wall_free_slip
+  end function is_smooth_axis
+
+  !> Apply the rules of one node.
   pure subroutine apply_rules(faces, walls, node, dt, mass, velocity, momentum, force)
+    !> The faces of the grid.
+    type(box_faces_t), intent(in) :: faces
+    !> Their walls, with what they know of the step. (faces%n)
+    type(box_wall_t), intent(in) :: walls(:)
+    !> Grid indices, from 0.
+    integer, intent(in) :: node(3)
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Mass of the node. [kg]
+    real(wp), intent(in) :: mass
+    !> Velocity of the node. [m/s] (nvel)
+    real(wp), intent(inout) :: velocity(:)
+    !> Momentum of the node. [kg m/s] (nvel)
+    real(wp), intent(inout) :: momentum(:)
+    !> Force on the node. [N] (nvel)
+    real(wp), intent(inout) :: force(:)
+
+    call apply_walls(faces, walls, node, dt, mass, velocity, momentum, force)
+    if (is_smooth_axis(faces, walls, node)) then
+      call fix(1, velocity, momentum, force)
+      call fix(3, velocity, momentum, force)
+    end if
+  end subroutine apply_rules
+
+  !> Apply the walls to one node, component by component.
+  pure subroutine apply_walls(faces, walls, node, dt, mass, velocity, momentum, force)
     !> The faces of the grid.
     type(box_faces_t), intent(in) :: faces
     !> Their walls, with what they know of the step. (faces%n)
@@ -100,7 +143,7 @@ contains
       end select
     end do
     if (any(largest > 0.0_wp)) call rub(norm2(largest), dt, momentum, force)
-  end subroutine apply_rules
+  end subroutine apply_walls
 
   !> Drop the accelerations that wait at a node of negligible mass where its walls take the force.
   pure subroutine hold_increment(rules, increment)
@@ -142,14 +185,15 @@ contains
       case (wall_driven, -wall_driven)
         velocity = 0.0_wp
         if (.not. still) velocity = walls(face)%vector(:size(velocity))
-        return
+        exit
       case (wall_traction, -wall_traction)
         where (walls(face)%held(:size(velocity))) velocity = 0.0_wp
-        return
+        exit
       case default
         cycle
       end select
     end do
+    if (is_smooth_axis(faces, walls, node)) velocity([1, 3]) = 0.0_wp
   end subroutine prescribe
 
   !> Fix one component.

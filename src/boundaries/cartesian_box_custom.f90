@@ -10,6 +10,7 @@ module mpm_cartesian_box_custom
   use mpm_field_writer, only: field_writer_t
   use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
+  use mpm_kinematics, only: type_axisymmetric
   use mpm_nodal_volume, only: nodal_volume
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
@@ -88,6 +89,11 @@ contains
                               &directions said, but not where their normal component is fixed; a &
                               &later code 0 replaces them. So one traction alone acts on an edge &
                               &of two faces with code 5, that of the later direction.')
+    call description%add_note('Code 1 on the axis r = 0 of TYPE 4 also fixes the swirl, and what &
+                              &other faces say does not change that.')
+    call description%add_note('TYPE 4: the area that codes 5 and 6 load on faces of constant z is &
+                              &that of the points, per radian, so that a uniform traction &
+                              &balances a uniform stress.')
     call description%add_note('Code 3 needs both faces of the direction and a grid that is &
                               &periodic in it, which moves the points.')
     call description%add_note('bc_nodal_mask: 0 no rule, 1 fixed, -1 free, 2 friction, 3 &
@@ -168,6 +174,10 @@ contains
   end subroutine keep_own_force
 
   !> Area of a wall at its nodes, times the fraction that is filled with points.
+  !!
+  !! On faces of constant z in TYPE 4 the area is that of the points, sum_p N_i V_p over half a cell:
+  !! it belongs to the nodal masses and forces, so that a uniform traction balances a uniform stress,
+  !! which the exact integral of r does not.
   subroutine fill_area(faces, face, grid, points, wall)
     !> The faces.
     type(box_faces_t), intent(in) :: faces
@@ -179,13 +189,19 @@ contains
     class(points_t), intent(in) :: points
     !> The wall.
     type(box_wall_t), intent(inout) :: wall
+    logical :: by_points
     integer :: hi(3), node(3), i, j, k, n
 
+    by_points = faces%kin%sim_type == type_axisymmetric .and. axis_of(face) == 2
     call resize(wall%filled_area, wall%part%size())
     if (size(wall%filled_area) == 0) return
     call nodal_volume(points%kin, points%stencil, wall%part, points%n_inside, &
                       points%order(:points%n_inside), points%x, points%extent, points%volume, &
-                      wall%filled_area)
+                      .not. by_points, wall%filled_area)
+    if (by_points) then
+      wall%filled_area = wall%filled_area/(0.5_wp*faces%h(2))
+      return
+    end if
     hi = wall%part%hi()
     do k = wall%part%lo(3), hi(3)
       do j = wall%part%lo(2), hi(2)

@@ -42,8 +42,9 @@ contains
                           '    boundary-class = "CartesianSmoothBox"')
     call description%add_note('The faces are those of the grid, wherever its lower corner is; &
                               &mpm_3d takes coordinate 0 as the lower face.')
-    call description%add_note('The third component of TYPE 4 and 5 is never held. TYPE 4: on the &
-                              &axis r = 0 only the radial velocity is 0, as it must be there.')
+    call description%add_note('The third component of TYPE 4 and 5 is held on the axis r = 0 only: &
+                              &there radial velocity and swirl are 0, as they must be (mpm_3d: &
+                              &swirl is free there).')
     call description%add_note('The field bc_nodal_mask is 1 for a component that is held; nodes &
                               &without memory show 0.')
   end subroutine cartesian_smooth_box_describe
@@ -85,6 +86,7 @@ contains
     do face = 1, self%faces%n
       axis = axis_of(face)
       call self%faces%fix(face, axis, axis, nodes)
+      if (self%faces%is_axis(face)) call self%faces%fix(face, 3, 3, nodes)
     end do
   end subroutine cartesian_smooth_box_apply
 
@@ -104,6 +106,7 @@ contains
     end associate
     do face = 1, self%faces%n
       call self%faces%set(face, axis_of(face), axis_of(face), 0.0_wp, window, velocity)
+      if (self%faces%is_axis(face)) call self%faces%set(face, 3, 3, 0.0_wp, window, velocity)
     end do
   end subroutine cartesian_smooth_box_prescribe
 
@@ -126,6 +129,7 @@ contains
     do face = 1, self%faces%n
       axis = axis_of(face)
       call self%faces%mark(face, axis, axis, nodes%window, mask)
+      if (self%faces%is_axis(face)) call self%faces%mark(face, 3, 3, nodes%window, mask)
     end do
     call writer%vector('bc_nodal_mask', mask, nodes%window)
   end subroutine cartesian_smooth_box_write_fields

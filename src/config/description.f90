@@ -226,7 +226,7 @@ contains
   end subroutine description_add_integer
 
   !> Append a property of the list of strings; without `default` it is required.
-  pure subroutine description_add_string(self, name, meaning, default, types)
+  pure subroutine description_add_string(self, name, meaning, default, is_list, types)
     !> The description.
     class(description_t), intent(inout) :: self
     !> Name in named entries.
@@ -235,6 +235,8 @@ contains
     character(*), intent(in) :: meaning
     !> Default value.
     character(*), intent(in), optional :: default
+    !> Takes all entries that are left.
+    logical, intent(in), optional :: is_list
     !> TYPEs in which it exists.
     logical, intent(in), optional :: types(5)
     type(property_t) :: item
@@ -246,6 +248,11 @@ contains
     if (present(default)) then
       item%required = .false.
       item%default_string = default
+    end if
+    if (present(is_list)) then
+      item%is_list = is_list
+      item%required = .not. is_list
+      if (is_list) item%default_string = ''
     end if
     if (present(types)) item%types = types
     call append(self%properties, item)

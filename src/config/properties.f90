@@ -6,7 +6,7 @@ module mpm_properties
   use mpm_errors, only: err_input, error_t, raise
   use mpm_kinds, only: wp
   use mpm_parser, only: parse_text
-  use mpm_strings, only: excerpt, nearest_name, string_t, to_text
+  use mpm_strings, only: append_text, excerpt, nearest_name, string_t, to_text
   implicit none
   private
   public :: make_properties, properties_t, resolve_properties, values_of_key
@@ -25,6 +25,8 @@ module mpm_properties
     real(wp), allocatable :: reals(:)
     !> Values of a list property of integers.
     integer, allocatable :: integers(:)
+    !> Values of a list property of strings.
+    type(string_t), allocatable :: strings(:)
     !> Whether the config gives it.
     logical :: given = .false.
     !> Where the config gives it, or where it should.
@@ -49,6 +51,8 @@ module mpm_properties
     procedure :: reals => properties_reals
     !> Values of a list of integers.
     procedure :: integers => properties_integers
+    !> Values of a list of strings.
+    procedure :: strings => properties_strings
     !> Whether the config gives the property.
     procedure :: given => properties_given
     !> Report a bad value at its place in the config.
@@ -157,7 +161,7 @@ contains
     item%integer = property%default_integer
     item%string = ''
     if (allocated(property%default_string)) item%string = property%default_string
-    allocate (item%reals(0), item%integers(0))
+    allocate (item%reals(0), item%integers(0), item%strings(0))
     item%file = file
     item%line = line
   end subroutine set_default
@@ -318,6 +322,7 @@ contains
       item%integers = [item%integers, integer_value]
     case default
       item%string = value%text
+      call append_text(item%strings, value%text)
     end select
   end subroutine set_value
 
@@ -499,6 +504,24 @@ contains
     allocate (values(0))
     if (i > 0) values = self%items(i)%integers
   end function properties_integers
+
+  !> Values of a list of strings.
+  pure subroutine properties_strings(self, name, values)
+    !> The properties.
+    class(properties_t), intent(in) :: self
+    !> Name in the description.
+    character(*), intent(in) :: name
+    !> All its values, none included.
+    type(string_t), allocatable, intent(out) :: values(:)
+    integer :: i
+
+    i = self%find(name)
+    if (i > 0) then
+      allocate (values, source=self%items(i)%strings)
+    else
+      allocate (values(0))
+    end if
+  end subroutine properties_strings
 
   !> Whether the config gives the property.
   pure function properties_given(self, name) result(given)

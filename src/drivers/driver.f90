@@ -28,7 +28,11 @@ module mpm_driver
     procedure :: before_step => driver_before_step
     !> Run from the start time to the stop time.
     procedure, non_overridable :: run => driver_run
-    !> Number of steps of the whole run.
+    !> Choose the next step, or end the run.
+    procedure :: next_step => driver_next_step
+    !> Number of steps of the whole run, and whether it is known before the run.
+    procedure :: plan => driver_plan
+    !> Number of steps when all have the configured length.
     procedure, non_overridable :: step_count => driver_step_count
   end type driver_t
 
@@ -102,6 +106,59 @@ contains
     end associate
   end subroutine driver_before_step
 
+  !> Choose the next step, or end the run: here a step of the configured length.
+  !!
+  !! Called before `before_step`. The last step is shortened to end at the stop time.
+  subroutine driver_next_step(self, model, solver, serializer, dt, t_next, error)
+    !> The driver.
+    class(driver_t), intent(inout) :: self
+    !> The model at the start of the step.
+    type(model_t), intent(in) :: model
+    !> The solver, for its stable steps.
+    class(solver_t), intent(in) :: solver
+    !> The serializer, for the time of the next frame.
+    class(serializer_t), intent(in) :: serializer
+    !> Length of the step; 0 when the run has reached its end. [s]
+    real(wp), intent(out) :: dt
+    !> Time at the end of the step. [s]
+    real(wp), intent(out) :: t_next
+    !> There is no step to go on with.
+    type(error_t), allocatable, intent(out) :: error
+    integer(lp) :: steps
+
+    associate (unused => solver, unused_serializer => serializer)
+    end associate
+    steps = self%step_count(model)
+    t_next = model%time
+    dt = 0.0_wp
+    if (model%step >= steps) return
+    t_next = model%t_start + real(model%step + 1, wp)*model%dt
+    dt = model%dt
+    if (model%step + 1 == steps) then
+      t_next = self%t_stop
+      dt = t_next - model%time
+    end if
+  end subroutine driver_next_step
+
+  !> Number of steps of the whole run, and whether it is known before the run.
+  subroutine driver_plan(self, model, solver, steps, exact)
+    !> The driver.
+    class(driver_t), intent(in) :: self
+    !> The model at its start.
+    type(model_t), intent(in) :: model
+    !> The solver, started, for its stable steps.
+    class(solver_t), intent(in) :: solver
+    !> Number of steps, at least 0.
+    integer(lp), intent(out) :: steps
+    !> Whether it is no estimate, since dt is kept as it is configured.
+    logical, intent(out) :: exact
+
+    associate (unused => solver)
+    end associate
+    steps = self%step_count(model)
+    exact = .true.
+  end subroutine driver_plan
+
   !> Number of steps from the start to the stop time; the last one may be shorter.
   pure function driver_step_count(self, model) result(steps)
     !> The driver.
@@ -133,21 +190,18 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer(lp) :: steps
     real(wp) :: dt, t_next
-    logical :: frame
+    logical :: frame, exact
 
-    steps = self%step_count(model)
-    call monitor%begin(model, solver, steps)
+    call self%plan(model, solver, steps, exact)
+    call monitor%begin(model, solver, steps, exact)
     call serializer%write_frame(model, error)
     if (allocated(error)) return
     call monitor%frame(model, serializer%frames)
-    do while (model%step < steps)
+    do
+      call self%next_step(model, solver, serializer, dt, t_next, error)
+      if (allocated(error)) exit
+      if (.not. dt > 0.0_wp) exit
       call self%before_step(model)
-      t_next = model%t_start + real(model%step + 1, wp)*model%dt
-      dt = model%dt
-      if (model%step + 1 == steps) then
-        t_next = self%t_stop
-        dt = t_next - model%time
-      end if
       frame = serializer%due(model, t_next)
       call solver%step(model, dt, frame, error)
       if (allocated(error)) exit
@@ -160,7 +214,7 @@ contains
         if (allocated(error)) exit
         call monitor%frame(model, serializer%frames)
       end if
-      call monitor%progress(model, steps, serializer%frames)
+      call monitor%progress(model, self%t_stop, serializer%frames)
     end do
     if (allocated(error)) then
       call monitor%clear_line()

@@ -8,7 +8,7 @@ module mpm_user_defined_gravity_driver
   use mpm_properties, only: properties_t
   implicit none
   private
-  public :: user_defined_gravity_driver_t
+  public :: add_gravity_properties, user_defined_gravity_driver_t
 
   !> A constant body force.
   type, extends(driver_t) :: user_defined_gravity_driver_t
@@ -33,13 +33,21 @@ contains
                           'Sulsky, Chen and Schreyer, CMAME 118 (1994) 179-196', &
                           'driver'//nl//'{'//nl//'    class = "UserDefinedGravityDriver"'//nl// &
                           '    properties = {1, 0, -9.81}   # t_stop, gx, gy'//nl//'}')
+    call add_gravity_properties(description)
+  end subroutine user_defined_gravity_driver_describe
+
+  !> Declare the properties that `init` reads; to be called before any other is added.
+  subroutine add_gravity_properties(description)
+    !> The description.
+    type(description_t), intent(inout) :: description
+
     call description%add_real('t_stop', 's', 'stop time')
     call description%add_real('gx', 'm/s2', 'acceleration along x (TYPE 4: r)')
     call description%add_real('gy', 'm/s2', 'acceleration along y (TYPE 4: z)', &
                               types=types_with_velocity(2))
     call description%add_real('gz', 'm/s2', 'acceleration along z (TYPE 4: theta)', &
                               types=types_with_velocity(3))
-  end subroutine user_defined_gravity_driver_describe
+  end subroutine add_gravity_properties
 
   !> Set up from the properties.
   subroutine user_defined_gravity_driver_init(self, properties, error)

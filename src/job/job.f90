@@ -120,6 +120,12 @@ contains
       if (allocated(nodes%remapped)) then
         bits = bits + storage_size(nodes%remapped, lp)*size(nodes%remapped, kind=lp)
       end if
+      if (allocated(points%reference_volume)) then
+        bits = bits + storage_size(points%mass, lp)*size(points%mass, kind=lp)
+      end if
+      if (allocated(points%smoothed_volume)) then
+        bits = bits + storage_size(points%mass, lp)*size(points%mass, kind=lp)
+      end if
       bits = bits + storage_size(points%id, lp)*3_lp*size(points%id, kind=lp)
       bits = bits + storage_size(nodes%mass, lp)* &
              (size(nodes%mass, kind=lp) + size(nodes%momentum, kind=lp) &

@@ -21,15 +21,17 @@ contains
     character(*), parameter :: shares(5) = &
       [character(18) :: 'm2 of section', 'm of depth', '', 'radian', 'm of depth']
     type(window_t) :: whole
-    real(wp) :: lower(3), upper(3)
+    character(:), allocatable :: text
+    real(wp) :: lower(3), upper(3), intervals
     integer(lp) :: steps, memory
     integer(lp) :: frames
+    logical :: exact
     integer :: dim
 
     dim = job%model%kin%dim
     whole = job%model%grid%whole()
     call job%model%grid%bounds(lower, upper)
-    steps = job%driver%step_count(job%model)
+    call job%driver%plan(job%model, job%solver, steps, exact)
     call line('config:  '//job%config//'   TYPE '//to_text(job%model%kin%sim_type)//' ('// &
               trim(kinds(job%model%kin%sim_type))//')')
     if (len_trim(shares(job%model%kin%sim_type)) > 0) then
@@ -37,25 +39,32 @@ contains
     end if
     call line('grid:    '//sizes(whole%n(:dim) - 1)//' cells, '//to_text(whole%size())// &
               ' nodes, '//box(lower(:dim), upper(:dim)))
-    call report_bodies(job)
+    call report_bodies(job, exact)
     call line('contacts: '//to_text(size(job%model%contacts)))
     memory = job%memory()
     call line('memory:  '//to_text(real(memory, wp)/1.0e6_wp, 3)//' MB for points and nodes')
-    call line('time:    t = '//to_text(job%model%t_start)//' to '//to_text(job%driver%t_stop)// &
-              ' s, dt = '//to_text(job%model%dt)//' s, '//counted(steps, 'step'))
+    text = ' s, dt = '//to_text(job%model%dt)//' s, '//counted(steps, 'step')
+    if (.not. exact) then
+      text = ' s, dt at most '//to_text(job%model%dt)//' s, about '//counted(steps, 'step')
+    end if
+    call line('time:    t = '//to_text(job%model%t_start)//' to '//to_text(job%driver%t_stop)//text)
     frames = 1
     if (job%serializer%rate > 0.0_wp) then
-      frames = frames + int(min(real(steps, wp), (job%driver%t_stop - job%model%t_start)* &
-                                job%serializer%rate + 1.0e-6_wp), lp)
+      intervals = (job%driver%t_stop - job%model%t_start)*job%serializer%rate + 1.0e-6_wp
+      ! Steps that are not of one length end at every frame's time.
+      if (exact) intervals = min(real(steps, wp), intervals)
+      frames = frames + int(max(0.0_wp, intervals), lp)
     end if
     call line('frames:  '//to_text(frames)//' in '//job%serializer%destination()// &
               ', for the points and the nodes of each body')
   end subroutine report_job
 
   !> A line for each body.
-  subroutine report_bodies(job)
+  subroutine report_bodies(job, fixed_step)
     !> The job, started.
     type(job_t), intent(in) :: job
+    !> Whether dt is kept as it is configured.
+    logical, intent(in) :: fixed_step
     character(:), allocatable :: text
     real(wp) :: speed, limit
     integer :: i
@@ -72,7 +81,7 @@ contains
         call job%solver%stable_step(job%model, i, speed, limit)
         if (speed > 0.0_wp) then
           text = text//', wave speed '//to_text(speed)//' m/s, stable step '//to_text(limit)//' s'
-          if (job%model%dt > limit) text = text//' (BELOW dt)'
+          if (fixed_step .and. job%model%dt > limit) text = text//' (BELOW dt)'
         end if
         if (.not. body%active) text = text//', not yet active'
         call line(text)

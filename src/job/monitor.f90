@@ -36,6 +36,8 @@ module mpm_monitor
     integer(lp), private :: clock_start = 0
     !> Clock count of the last progress line.
     integer(lp), private :: clock_progress = 0
+    !> Whether the steps have the configured length, which the stable steps are compared with.
+    logical, private :: fixed_step = .true.
     !> Whether progress lines are written.
     logical, private :: shows_progress = .false.
     !> Whether a body has been warned of.
@@ -68,7 +70,7 @@ module mpm_monitor
 contains
 
   !> Start of the loop over time.
-  subroutine monitor_begin(self, model, solver, steps)
+  subroutine monitor_begin(self, model, solver, steps, exact)
     !> The monitor.
     class(monitor_t), intent(inout) :: self
     !> The model at its start.
@@ -77,8 +79,12 @@ contains
     class(solver_t), intent(in) :: solver
     !> Number of steps.
     integer(lp), intent(in) :: steps
+    !> Whether it is no estimate, and dt kept as it is configured.
+    logical, intent(in) :: exact
+    character(:), allocatable :: planned
     integer :: i
 
+    self%fixed_step = exact
     call measure(model, self%at_start)
     self%shows_progress = is_terminal(standard_output)
     if (self%verbosity /= normal) self%shows_progress = .false.
@@ -89,7 +95,9 @@ contains
       call self%warn('body "'//model%bodies(i)%body%name//'" has no active point')
     end do
     call self%check(model, solver)
-    call self%say('running '//counted(steps, 'step')//' on '//counted(model%threads, 'thread'))
+    planned = counted(steps, 'step')
+    if (.not. exact) planned = 'about '//planned
+    call self%say('running '//planned//' on '//counted(model%threads, 'thread'))
     call system_clock(self%clock_start)
     self%clock_progress = self%clock_start
   end subroutine monitor_begin
@@ -108,7 +116,7 @@ contains
     lost = 0
     do i = 1, size(model%bodies)
       lost = lost + model%bodies(i)%body%points%n_lost
-      if (self%warned(i)) cycle
+      if (self%warned(i) .or. .not. self%fixed_step) cycle
       call solver%stable_step(model, i, speed, limit)
       if (model%dt <= limit) cycle
       self%warned(i) = .true.
@@ -138,17 +146,17 @@ contains
   end subroutine monitor_frame
 
   !> End of a step.
-  subroutine monitor_progress(self, model, steps, frames)
+  subroutine monitor_progress(self, model, t_stop, frames)
     !> The monitor.
     class(monitor_t), intent(inout) :: self
     !> The model.
     type(model_t), intent(in) :: model
-    !> Steps of the whole run.
-    integer(lp), intent(in) :: steps
+    !> Stop time. [s]
+    real(wp), intent(in) :: t_stop
     !> Frames written so far.
     integer, intent(in) :: frames
     integer(lp) :: now, rate
-    real(wp) :: seconds, speed
+    real(wp) :: seconds, speed, part
     integer :: i
 
     do i = 1, size(model%bodies)
@@ -161,11 +169,12 @@ contains
     self%clock_progress = now
     seconds = self%elapsed()
     speed = real(model%step, wp)/seconds
+    part = (model%time - model%t_start)/(t_stop - model%t_start)
     write (output_unit, '(a)', advance='no') start_of_line//'t = '// &
       to_text(model%time, 4)//' s   '// &
-      to_text(int((100*model%step)/steps))//' %   frames '//to_text(frames)//'   '// &
+      to_text(int(100.0_wp*part))//' %   frames '//to_text(frames)//'   '// &
       to_text(speed, 3)//' steps/s   left '// &
-      duration(anint(real(steps - model%step, wp)/speed))//erase_line
+      duration(anint(seconds*(1.0_wp - part)/part))//erase_line
     flush (output_unit)
   end subroutine monitor_progress
 

@@ -5,7 +5,7 @@ module mpm_advance
   use mpm_stencil, only: axis_fraction, block_size, stencil_t
   implicit none
   private
-  public :: advance_points, exponential, trace_of_gradient, turn_basis
+  public :: advance_points, exponential, trace_of_gradient, turn_stress
 
 contains
 
@@ -149,6 +149,35 @@ contains
       end if
     end do
   end subroutine turn_basis
+
+  !> TYPE 4: express new stresses in the local cylindrical basis of the moved points.
+  !!
+  !! The gradient has its components in the basis of the start of the step, and so has the stress
+  !! that a material makes of it. The basis turns by the angle dt v_theta/r = -dt L_rt.
+  pure subroutine turn_stress(n, dt, gradient, stress)
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients rr rz zr zz tr tz rt tt. [1/s] (8, n)
+    real(wp), intent(in) :: gradient(8, n)
+    !> Stresses rr zz tt rz zt tr. [Pa] (6, n)
+    real(wp), intent(inout) :: stress(6, n)
+    real(wp) :: c, s, t(6)
+    integer :: p
+
+    do p = 1, n
+      if (.not. abs(gradient(7, p)) > 0.0_wp) cycle
+      c = cos(dt*gradient(7, p))
+      s = -sin(dt*gradient(7, p))
+      t = stress(:, p)
+      stress(1, p) = c*c*t(1) + 2.0_wp*c*s*t(6) + s*s*t(3)
+      stress(3, p) = s*s*t(1) - 2.0_wp*c*s*t(6) + c*c*t(3)
+      stress(4, p) = c*t(4) + s*t(5)
+      stress(5, p) = c*t(5) - s*t(4)
+      stress(6, p) = (c*c - s*s)*t(6) + c*s*(t(3) - t(1))
+    end do
+  end subroutine turn_stress
 
   !> Traces of velocity gradients.
   pure subroutine trace_of_gradient(kin, n, gradient, trace)

@@ -13,8 +13,9 @@ module mpm_nodal_volume
 
 contains
 
-  !> Volume of points at the nodes of a part of the grid; in TYPE 4 the meridian area V_p/r_p.
-  pure subroutine nodal_volume(kin, stencil, part, n, order, x, extent, volume, node_volume)
+  !> Volume of points at the nodes of a part of the grid.
+  pure subroutine nodal_volume(kin, stencil, part, n, order, x, extent, volume, per_radius, &
+                               node_volume)
     !> Component counts.
     type(kinematics_t), intent(in) :: kin
     !> Basis.
@@ -31,6 +32,8 @@ contains
     real(wp), intent(in) :: extent(*)
     !> Volumes. [m3] (np)
     real(wp), intent(in) :: volume(*)
+    !> TYPE 4: count the meridian areas V_p/r_p instead of the volumes per radian.
+    logical, intent(in) :: per_radius
     !> Volumes at the nodes of `part`. [m3] (part%size())
     real(wp), intent(out) :: node_volume(:)
     real(wp) :: xb(stencil%dim, block_size), eb(block_size), share
@@ -52,7 +55,7 @@ contains
         if (keys(j) == outside) cycle
         if (any(base(:, j) > part%hi() .or. base(:, j) + reach < part%lo)) cycle
         share = volume(order(first + j - 1))
-        if (kin%sim_type == type_axisymmetric) then
+        if (per_radius .and. kin%sim_type == type_axisymmetric) then
           share = share/max(xb(1, j), axis_fraction*stencil%h(1))
         end if
         call add_point(stencil, part, reach, base(:, j), xb(:, j), eb(j), share, node_volume)

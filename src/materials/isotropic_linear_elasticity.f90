@@ -2,23 +2,28 @@
 module mpm_isotropic_linear_elasticity
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
+  use mpm_hughes_winget, only: hughes_winget
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t, type_1d, type_axisymmetric, type_out_of_plane, &
                             type_plane_strain
   use mpm_material, only: material_t
   use mpm_properties, only: properties_t
+  use mpm_strings, only: excerpt
   implicit none
   private
   public :: isotropic_linear_elasticity_t
 
   !> Hypoelastic solid with the Jaumann rate.
   !!
-  !! T += dt (2 G D + lambda tr(D) I + W T - T W), D and W the symmetric and skew parts of L.
+  !! By forward Euler T += dt (2 G D + lambda tr(D) I + W T - T W), D and W the symmetric and skew
+  !! parts of L; or by the incrementally objective rule of `mpm_hughes_winget`.
   type, extends(material_t) :: isotropic_linear_elasticity_t
     !> First Lame constant. [Pa]
     real(wp) :: lambda = 0.0_wp
     !> Shear modulus. [Pa]
     real(wp) :: shear = 0.0_wp
+    !> Integrate the rotation by the rule of Hughes and Winget instead of forward Euler.
+    logical :: incrementally_objective = .false.
   contains
     procedure, nopass :: describe => isotropic_linear_elasticity_describe
     procedure :: init => isotropic_linear_elasticity_init
@@ -46,8 +51,13 @@ contains
                           '    material-props = {E = 1e5, nu = 0.3}')
     call description%add_real('E', 'Pa', 'Young''s modulus', above=0.0_wp)
     call description%add_real('nu', '-', 'Poisson ratio', above=-1.0_wp, below=0.5_wp)
-    call description%add_note('Rotation is integrated by forward Euler as in mpm_3d: under a spin &
-                              &w the deviator grows by sqrt(1 + 4 w^2 dt^2) a step.')
+    call description%add_string('rate', 'integration of the rotation: "jaumann", forward Euler as &
+                                &in mpm_3d, or "hughes_winget", incrementally objective', &
+                                default='jaumann')
+    call description%add_note('rate = "jaumann": under a spin w the deviator grows by &
+                              &sqrt(1 + 4 w^2 dt^2) a step. rate = "hughes_winget": a rigid motion &
+                              &turns the stress to round-off, and strains are of second order in &
+                              &dt (Hughes and Winget, IJNME 15 (1980) 1862-1867).')
   end subroutine isotropic_linear_elasticity_describe
 
   !> Set the constants from the properties.
@@ -58,10 +68,20 @@ contains
     type(kinematics_t), intent(in) :: kin
     !> Checked properties.
     type(properties_t), intent(in) :: properties
-    !> Never set: the bounds of the properties suffice.
+    !> There is no such rate.
     type(error_t), allocatable, intent(out) :: error
 
     call self%set(kin, properties%real('E'), properties%real('nu'))
+    select case (properties%string('rate'))
+    case ('jaumann')
+      self%incrementally_objective = .false.
+    case ('hughes_winget')
+      self%incrementally_objective = .true.
+    case default
+      call properties%reject('rate', 'there is no rate "'//excerpt(properties%string('rate'))// &
+                             '"', error, '"jaumann" or "hughes_winget"   (mpm3d --describe &
+                             &IsotropicLinearElasticity)')
+    end select
   end subroutine isotropic_linear_elasticity_init
 
   !> Set the constants from numbers.
@@ -97,12 +117,17 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(inout) :: stress(self%kin%nstress, n)
-    !> Always 0: every velocity gradient has its stress.
+    !> First point that is turned inside out within the step; always 0 with forward Euler, for which
+    !> every velocity gradient has its stress.
     integer, intent(out) :: first_bad
 
     associate (unused => mass, unused_volume => volume)
     end associate
     first_bad = 0
+    if (self%incrementally_objective) then
+      call hughes_winget(self%kin, n, dt, self%lambda, self%shear, gradient, stress, first_bad)
+      return
+    end if
     select case (self%kin%sim_type)
     case (type_1d)
       call update_1d(n, dt*self%lambda, 2.0_wp*dt*self%shear, gradient, stress)

@@ -99,7 +99,7 @@ contains
   pure function serializer_due(self, model, time) result(due)
     !> The serializer.
     class(serializer_t), intent(in) :: self
-    !> The model, for its start time and step.
+    !> The model at the start of the step that ends at the time.
     type(model_t), intent(in) :: model
     !> The time in question. [s]
     real(wp), intent(in) :: time
@@ -109,8 +109,8 @@ contains
 
     due = self%frames == 0
     if (due .or. .not. self%rate > 0.0_wp) return
-    ! A frame time that is a multiple of dt up to rounding must not wait for the next step.
-    slack = 1.0e-6_wp*model%dt
+    ! A frame time that a step reaches up to rounding must not wait for the next step.
+    slack = 1.0e-6_wp*min(model%dt, time - model%time)
     due = time - model%t_start >= real(self%frames, wp)/self%rate - slack
   end function serializer_due
 

@@ -61,7 +61,7 @@ contains
     do i = 1, size(model%bodies)
       if (.not. model%bodies(i)%body%active) cycle
       call update_points(model, i, dt, .false., error, &
-                         sweep_t(drift=.false., strain=.false., kept=self%transfer%kept))
+                         sweep=sweep_t(drift=.false., strain=.false., kept=self%transfer%kept))
       if (allocated(error)) return
       associate (body => model%bodies(i)%body)
         call map_again(body, model%threads)
@@ -72,7 +72,8 @@ contains
     end do
     do i = 1, size(model%bodies)
       if (.not. model%bodies(i)%body%active) cycle
-      call update_points(model, i, dt, keep_gradient, error, sweep_t(kick=.false., remapped=.true.))
+      call update_points(model, i, dt, keep_gradient, error, &
+                         sweep=sweep_t(kick=.false., remapped=.true.))
       if (allocated(error)) return
     end do
   end subroutine explicit_musl_step

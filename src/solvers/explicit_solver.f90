@@ -1,18 +1,15 @@
 !> What the explicit solvers share: properties, start, and the parts of a step on the grid.
 module mpm_explicit_solver
-  use mpm_advance, only: turn_basis
   use mpm_contact_marks, only: contact_marks_t
   use mpm_description, only: description_t
   use mpm_errors, only: err_input, error_t
   use mpm_explicit_steps, only: locate_points, map_to_nodes, update_nodes
   use mpm_kinds, only: wp
-  use mpm_kinematics, only: type_axisymmetric
   use mpm_model, only: model_t
   use mpm_point_blocks, only: fit_points
   use mpm_properties, only: properties_t
   use mpm_solver, only: solver_t
-  use mpm_stencil, only: axis_fraction
-  use mpm_transfer, only: add_transfer_properties, gather, transfer_t
+  use mpm_transfer, only: add_transfer_properties, transfer_t
   implicit none
   private
   public :: add_explicit_properties, explicit_solver_t
@@ -23,7 +20,7 @@ module mpm_explicit_solver
     logical :: averaged = .true.
     !> Contacts use trial momenta that include the forces so far.
     logical :: implicit_contact = .true.
-    !> Move the initial velocities back by half a step.
+    !> Velocities advance from the middle of the last step to that of the present one.
     logical :: staggered = .false.
     !> How velocities go from the points to the grid and back.
     type(transfer_t) :: transfer
@@ -52,10 +49,9 @@ contains
     call description%add_integer('contact', '1: contacts use trial momenta with all forces so far &
                                  &(implicit); 0: the momenta of the start of the step (explicit)', &
                                  default=1, lower=0, upper=1)
-    call description%add_integer('staggered', '1: the velocities of the points file are those of &
-                                 &the start time and are moved back by half a step; 0: they are &
-                                 &taken as those of half a step before', default=0, lower=0, &
-                                 upper=1)
+    call description%add_integer('staggered', '1: velocities advance by (dt + last dt)/2, dt/2 in &
+                                 &the first step, so that they belong to the middle of each step; &
+                                 &0: by dt', default=0, lower=0, upper=1)
     call add_transfer_properties(description)
     call description%add_note('TYPE 4 carries the inertia of the rotating basis (v_theta^2/r and &
                               &v_r v_theta/r), which mpm_3d lacks; close to the axis 1/r is &
@@ -104,14 +100,6 @@ contains
       error%code = err_input
       return
     end if
-    if (self%staggered) then
-      call self%push(model, model%dt)
-      do i = 1, size(model%bodies)
-        if (model%bodies(i)%body%active) call move_back(model, i, 0.5_wp*model%dt)
-      end do
-      call self%map(model, error)
-      if (allocated(error)) return
-    end if
     if (self%transfer%affine) then
       ! The first mapping had no affine fields; they begin as those that fit its velocities.
       do i = 1, size(model%bodies)
@@ -130,29 +118,6 @@ contains
       if (model%bodies(i)%body%active) model%bodies(i)%body%nodes%increment = 0.0_wp
     end do
   end subroutine explicit_solver_start
-
-  !> Move the velocities of a body back in time, with the accelerations of the nodes' last update.
-  subroutine move_back(model, body, time)
-    !> The model.
-    type(model_t), intent(inout) :: model
-    !> Position of the body.
-    integer, intent(in) :: body
-    !> Half of the step of the last update. [s]
-    real(wp), intent(in) :: time
-    real(wp), allocatable :: change(:, :)
-    integer :: n
-
-    associate (points => model%bodies(body)%body%points, nodes => model%bodies(body)%body%nodes)
-      n = points%n_inside
-      if (n == 0) return
-      allocate (change(points%kin%nvel, n))
-      call gather(points, nodes, model%threads, nodes%increment, change)
-      points%velocity(:, :n) = points%velocity(:, :n) - 0.5_wp*change
-      if (points%kin%sim_type /= type_axisymmetric) return
-      call turn_basis(n, -time, axis_fraction*points%stencil%h(1), points%x(:, :n), &
-                      points%velocity(:, :n))
-    end associate
-  end subroutine move_back
 
   !> Ask for the marks of contacts, if there are contacts.
   subroutine explicit_solver_mark_contacts(self, model)
@@ -191,8 +156,11 @@ contains
     type(model_t), intent(inout) :: model
     !> Length of the step. [s]
     real(wp), intent(in) :: dt
+    real(wp) :: kick
     integer :: i
 
+    kick = dt
+    if (self%staggered) kick = 0.5_wp*(model%last_dt + dt)
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
         if (.not. body%active) cycle
@@ -202,7 +170,7 @@ contains
       end associate
     end do
     do i = 1, size(model%contacts)
-      call model%contacts(i)%contact%apply(model%grid, model%bodies, dt, self%implicit_contact, &
+      call model%contacts(i)%contact%apply(model%grid, model%bodies, kick, self%implicit_contact, &
                                            model%threads)
     end do
     do i = 1, size(model%bodies)
@@ -210,11 +178,11 @@ contains
         if (.not. body%active) cycle
         if (allocated(self%marks)) call self%marks(i)%mark(body%nodes)
         if (allocated(body%boundary)) then
-          call body%boundary%apply(model%grid, body%points, body%nodes, dt)
+          call body%boundary%apply(model%grid, body%points, body%nodes, kick)
         end if
-        call update_nodes(body%nodes, dt, model%threads)
+        call update_nodes(body%nodes, kick, model%threads)
         if (allocated(self%marks)) call self%marks(i)%keep(body%nodes)
-        call self%transfer%finish(body%nodes, dt, model%threads)
+        call self%transfer%finish(body%nodes, kick, model%threads)
       end associate
     end do
   end subroutine explicit_solver_push

@@ -1,11 +1,11 @@
 !> The parts of an explicit step, from which the explicit solvers are put together.
 module mpm_explicit_steps
-  use mpm_advance, only: advance_points
+  use mpm_advance, only: advance_points, turn_stress
   use mpm_body, only: body_t
   use mpm_errors, only: err_simulation, error_t, raise
   use mpm_g2p, only: g2p
   use mpm_kinds, only: lp, wp
-  use mpm_kinematics, only: type_axisymmetric
+  use mpm_kinematics, only: kinematics_t, type_axisymmetric
   use mpm_material, only: material_t
   use mpm_model, only: model_t
   use mpm_momentum, only: add_momentum
@@ -21,7 +21,9 @@ module mpm_explicit_steps
   use mpm_window, only: window_t
   implicit none
   private
-  public :: body_stable_step, locate_points, map_to_nodes, update_nodes, update_points
+  public :: advance_stress, body_stable_step, locate_points, map_to_nodes, raise_bad_point
+  public :: update_nodes, update_points
+  public :: bad_stress
 
   !> Why a block of points stopped the run.
   integer, parameter :: went_well = 0, bad_motion = 1, bad_stress = 2
@@ -236,7 +238,7 @@ contains
   end subroutine advance_nodes
 
   !> Advance the points of a body with the grid, then their stress.
-  subroutine update_points(model, body, dt, keep_gradient, error, sweep)
+  subroutine update_points(model, body, dt, keep_gradient, error, keep_stress, sweep)
     !> The model.
     type(model_t), intent(inout) :: model
     !> Position of the body in the model's list.
@@ -247,16 +249,21 @@ contains
     logical, intent(in) :: keep_gradient
     !> A point is not finite, moved more than a cell or lost its volume.
     type(error_t), allocatable, intent(out) :: error
+    !> Leave the stress as it is; false when left out.
+    logical, intent(in), optional :: keep_stress
     !> What to do; when left out all of it, by FLIP with the stress updated last.
     type(sweep_t), intent(in), optional :: sweep
     integer, allocatable :: slot(:), cause(:)
     integer :: blocks, first_bad, i
+    logical :: with_stress
 
     associate (item => model%bodies(body)%body)
       if (item%points%n_inside == 0) return
       blocks = (item%points%n_inside + block_size - 1)/block_size
       allocate (slot(blocks), cause(blocks))
-      if (allocated(item%material)) then
+      with_stress = allocated(item%material)
+      if (present(keep_stress)) with_stress = with_stress .and. .not. keep_stress
+      if (with_stress) then
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
                           keep_gradient, slot, cause, item%material, sweep)
       else
@@ -388,8 +395,13 @@ contains
     if (slot == 0) then
       cause = went_well
       if (present(material) .and. strain) then
-        call material%update_stress(n, dt, gradient, points%mass(a:b), points%volume(a:b), &
-                                    points%stress(:, a:b), slot)
+        if (drift) then
+          call advance_stress(points%kin, material, n, dt, gradient, points%mass(a:b), &
+                              points%volume(a:b), points%stress(:, a:b), slot)
+        else
+          call material%update_stress(n, dt, gradient, points%mass(a:b), points%volume(a:b), &
+                                      points%stress(:, a:b), slot)
+        end if
         if (slot > 0) cause = bad_stress
       end if
       if (drift) then
@@ -401,6 +413,31 @@ contains
     end if
     if (slot > 0) slot = slot + a - 1
   end subroutine update_block
+
+  !> Advance the stress of a block of points over one step.
+  subroutine advance_stress(kin, material, n, dt, gradient, mass, volume, stress, first_bad)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Constitutive law.
+    class(material_t), intent(in) :: material
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients of the step. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes at the end of the step. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses, of the start of the step on entry, of its end on exit. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(kin%nstress, n)
+    !> First point for which there is no stress; 0 when there is none.
+    integer, intent(out) :: first_bad
+
+    call material%update_stress(n, dt, gradient, mass, volume, stress, first_bad)
+    if (kin%sim_type == type_axisymmetric) call turn_stress(n, dt, gradient, stress)
+  end subroutine advance_stress
 
   !> The error that stops a run that went bad.
   subroutine raise_bad_point(model, body, slot, cause, dt, error)
@@ -471,8 +508,9 @@ contains
   !!
   !! A mode of wave number k is stable for c**2 K dt**2 <= 4/(2 - mu). With n points per cell and
   !! direction the hats give K = 4 s/h**2 and mu = 1 - (2/3 + 1/(3 n**2)) s, s = sin**2(k h/2); the
-  !! worst mode is s = 1: c dt/h <= 1/sqrt(5/3 + 1/(3 n**2)). In several dimensions K is at most the
-  !! sum over the directions, hence the safe bound c dt sqrt(sum 1/h_d**2) <= the same number.
+  !! worst mode is s = 1: c dt/h <= 1/sqrt(5/3 + 1/(3 n**2)). In several dimensions K is the sum over
+  !! the directions of K_d times the mu of the others, and mu the product of all. From n = 2 on, and
+  !! with averaged functions, the worst mode runs along one direction, that of the smallest spacing.
   !!
   !! When the gradient is formed from velocities that went through the points (MUSL, USF), stability
   !! needs mu c**2 K dt**2 <= 4, with FLIP. mu = 1 - g s, where g = 4 mean(xi (1 - xi)) is least,
@@ -517,26 +555,39 @@ contains
     logical, intent(in), optional :: flip
     !> Wave speed times stable step. [m]
     real(wp) :: length
-    real(wp) :: per_cell, inverse, g
+    real(wp) :: per_cell, g
+    logical :: through_points
+    !> One point a cell and hats: its place in the cell counts. The worst is the middle in one
+    !! direction, and on node lines in the others, with mu = 1/2 or 3/4 in the first.
+    real(wp), parameter :: single_point_limit(3) = &
+      [sqrt(0.5_wp), 2.0_wp/3.0_wp, sqrt(0.32_wp)]
+    !> Two points a cell, but for the rounding of volumes and roots.
+    real(wp), parameter :: nearly_two = 2.0_wp - 1.0e-6_wp
     integer :: n, dim
 
     n = body%points%n_inside
     dim = body%points%kin%dim
-    ! Points per cell and direction: the spacing over the side of the mean point.
-    per_cell = (product(spacing(:dim))*real(n, wp)/sum((2.0_wp*body%points%extent(:n))**dim)) &
+    ! Points per cell along the smallest spacing, as the side of the mean point has it.
+    per_cell = minval(spacing(:dim))/(sum((2.0_wp*body%points%extent(:n))**dim)/real(n, wp)) &
                **(1.0_wp/real(dim, wp))
     per_cell = max(1.0_wp, per_cell)
-    inverse = sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))
-    if (present(filtered)) then
-      if (filtered) then
-        g = 2.0_wp/3.0_wp*(1.0_wp - 1.0_wp/per_cell**2)
-        inverse = merge(0.5_wp/sqrt(max(g, 0.5_wp)), sqrt(1.0_wp - g), g > 0.5_wp)
-        if (present(flip)) then
-          if (.not. flip) inverse = 1.0_wp
-        end if
+    through_points = .false.
+    if (present(filtered)) through_points = filtered
+    if (through_points) then
+      g = 2.0_wp/3.0_wp*(1.0_wp - 1.0_wp/per_cell**2)
+      length = merge(2.0_wp*sqrt(g), 1.0_wp/sqrt(1.0_wp - g), g > 0.5_wp)
+      if (present(flip)) then
+        if (.not. flip) length = 1.0_wp
       end if
+      length = length/sqrt(sum(1.0_wp/spacing(:dim)**2))
+      return
     end if
-    length = 1.0_wp/(inverse*sqrt(sum(1.0_wp/spacing(:dim)**2)))
+    if (per_cell < nearly_two .and. .not. body%points%stencil%averaged) then
+      length = single_point_limit(dim)
+    else
+      length = 1.0_wp/sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))
+    end if
+    length = length*minval(spacing(:dim))
   end function stable_length
 
 end module mpm_explicit_steps

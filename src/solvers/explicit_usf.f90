@@ -67,7 +67,8 @@ contains
             call body%boundary%prescribe(body%nodes%window, .false., body%nodes%velocity)
           end if
         end associate
-        call update_points(model, i, dt, keep_gradient, error, sweep_t(kick=.false., drift=.false.))
+        call update_points(model, i, dt, keep_gradient, error, &
+                         sweep=sweep_t(kick=.false., drift=.false.))
         if (allocated(error)) return
       end do
       call self%map(model, error)
@@ -77,7 +78,7 @@ contains
     do i = 1, size(model%bodies)
       if (.not. model%bodies(i)%body%active) cycle
       call update_points(model, i, dt, .false., error, &
-                         sweep_t(strain=.false., kept=self%transfer%kept))
+                         sweep=sweep_t(strain=.false., kept=self%transfer%kept))
       if (allocated(error)) return
     end do
   end subroutine explicit_usf_step

@@ -9,7 +9,7 @@ module mpm_explicit_usl
   use mpm_sweep, only: sweep_t
   implicit none
   private
-  public :: explicit_usl_t
+  public :: explicit_usl_step, explicit_usl_t
 
   !> Symplectic Euler steps; the stress follows from the new velocities of the nodes.
   type, extends(explicit_solver_t) :: explicit_usl_t
@@ -17,6 +17,8 @@ module mpm_explicit_usl
     procedure, nopass :: describe => explicit_usl_describe
     procedure :: step => explicit_usl_step
     procedure :: stable_step => explicit_usl_stable_step
+    !> Advance the points of a body, their volume and stress, when its nodes are advanced.
+    procedure :: advance_body => explicit_usl_advance_body
   end type explicit_usl_t
 
 contains
@@ -38,6 +40,8 @@ contains
   end subroutine explicit_usl_describe
 
   !> Advance the model by one step.
+  !!
+  !! Public since a class that overrides `step` loses its own type in a call of its parent's.
   subroutine explicit_usl_step(self, model, dt, keep_gradient, error)
     !> The solver.
     class(explicit_usl_t), intent(inout) :: self
@@ -56,14 +60,33 @@ contains
     call self%push(model, dt)
     do i = 1, size(model%bodies)
       if (.not. model%bodies(i)%body%active) cycle
-      if (self%transfer%is_flip()) then
-        call update_points(model, i, dt, keep_gradient, error)
-      else
-        call update_points(model, i, dt, keep_gradient, error, sweep_t(kept=self%transfer%kept))
-      end if
+      call self%advance_body(model, i, dt, keep_gradient, error)
       if (allocated(error)) return
     end do
   end subroutine explicit_usl_step
+
+  !> Advance the points of a body with the grid, then their stress.
+  subroutine explicit_usl_advance_body(self, model, body, dt, keep_gradient, error)
+    !> The solver.
+    class(explicit_usl_t), intent(inout) :: self
+    !> The model, its nodes advanced.
+    type(model_t), intent(inout) :: model
+    !> Position of the body in the model's list.
+    integer, intent(in) :: body
+    !> Length of the step. [s]
+    real(wp), intent(in) :: dt
+    !> Store the velocity gradients, for a frame.
+    logical, intent(in) :: keep_gradient
+    !> The simulation went bad.
+    type(error_t), allocatable, intent(out) :: error
+
+    if (self%transfer%is_flip()) then
+      call update_points(model, body, dt, keep_gradient, error)
+    else
+      call update_points(model, body, dt, keep_gradient, error, &
+                         sweep=sweep_t(kept=self%transfer%kept))
+    end if
+  end subroutine explicit_usl_advance_body
 
   !> Largest stable time step of a body by linear theory.
   !!

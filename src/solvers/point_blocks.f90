@@ -1,6 +1,6 @@
 !> Sweeps over blocks of points that differ from the one sweep of FLIP with the stress updated last.
 module mpm_point_blocks
-  use mpm_advance, only: advance_points, exponential, trace_of_gradient
+  use mpm_advance, only: advance_points, exponential, trace_of_gradient, turn_stress
   use mpm_g2p, only: g2p
   use mpm_kinds, only: wp
   use mpm_kinematics, only: type_axisymmetric
@@ -50,7 +50,13 @@ contains
       else
         gain(:kin%nvel*n) = 0.0_wp
       end if
-      if (.not. sweep%strain) gradient(:kin%ngrad*n) = 0.0_wp
+      if (.not. sweep%strain) then
+        ! The stress of the start of the step turns with the basis, which moves now.
+        if (sweep%drift .and. kin%sim_type == type_axisymmetric) then
+          call turn_stress(n, dt, gradient, points%stress(:, a:b))
+        end if
+        gradient(:kin%ngrad*n) = 0.0_wp
+      end if
       if (sweep%drift) then
         if (kin%sim_type == type_axisymmetric .and. allocated(points%affine)) then
           call turn_affine(n, dt, axis_fraction*stencil%h(1), points%x(:, a:b), &

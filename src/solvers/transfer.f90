@@ -17,7 +17,7 @@ module mpm_transfer
   use mpm_threads, only: useful_threads
   implicit none
   private
-  public :: add_transfer_properties, fit_length, gather, map_velocities, points_gain, transfer_t
+  public :: add_transfer_properties, fit_length, map_velocities, points_gain, transfer_t
 
   !> One way of transfer.
   type :: transfer_t
@@ -86,6 +86,8 @@ contains
     character(:), allocatable :: name
 
     name = properties%string('transfer')
+    ! A class without this property keeps FLIP.
+    if (name == '' .and. .not. properties%given('transfer')) return
     if (name /= 'FLIP' .and. properties%given('flip')) then
       call properties%reject('flip', 'flip does not belong to the transfer '//name, error, &
                              'leave it out, or use transfer = "FLIP"')

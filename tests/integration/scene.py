@@ -139,15 +139,14 @@ class Scene:
     #: Flags of the solver: corner-averaged mapping, implicit contact.
     cpdi: int = 1
     implicit_contact: int = 1
-    solver: str = "ExplicitUSL"
-    #: Lines of the section solver beside its flags.
-    solver_lines: str = ""
     #: Sections after the bodies.
     contacts: Sequence[str] = field(default_factory=list)
     #: Lines of the section job.
     job: str = ""
     #: The section driver, when it is none of the two above.
     driver: str | None = None
+    #: The section solver, when it is not ExplicitUSL with the two flags.
+    solver: str | None = None
 
     def config(self) -> str:
         """Return the text of the config."""
@@ -158,6 +157,12 @@ class Scene:
 {{
     class = "{driver}"
     properties = {{{numbers(reals)}}}
+}}
+"""
+        solver_section = f"""solver
+{{
+    class = "ExplicitUSL"
+    int-properties = {{{self.cpdi}, {self.implicit_contact}}}
 }}
 """
         head = f"""job
@@ -174,13 +179,7 @@ serializer
     int-properties = {{{self.digits}}}
     str-properties = {{"frames", "save", "test"}}
 }}
-{self.driver or driver_section}solver
-{{
-    class = "{self.solver}"
-    int-properties = {{{self.cpdi}, {self.implicit_contact}}}
-    {self.solver_lines}
-}}
-grid
+{self.driver or driver_section}{self.solver or solver_section}grid
 {{
     class = "CartesianLinear"
     properties = {{{numbers(self.lengths)}}}

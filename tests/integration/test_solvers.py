@@ -23,6 +23,16 @@ TRANSFERS = {
 }
 
 
+def section(solver: str, lines: str = "") -> str:
+    """Return a section solver with the corner-averaged mapping."""
+    return f"""solver
+{{
+    class = "{solver}"
+    {lines}
+}}
+"""
+
+
 @SOLVERS
 @pytest.mark.parametrize("transfer", TRANSFERS)
 @pytest.mark.parametrize("sim_type", TYPES)
@@ -39,8 +49,7 @@ def test_free_fall_is_exact(
         dt=DT,
         t_stop=STEPS * DT,
         rate=1.0 / (STEPS * DT),
-        solver=solver,
-        solver_lines=TRANSFERS[transfer],
+        solver=section(solver, TRANSFERS[transfer]),
     )
     run_scene(mpm3d, scene, tmp_path)
     last = read_series(tmp_path / "frames", "fpd", 0, "faller")[-1]
@@ -63,7 +72,7 @@ def test_staggered_start(mpm3d: Run, tmp_path: Path, sim_type: int, solver: str)
         dt=DT,
         t_stop=STEPS * DT,
         rate=1.0 / (STEPS * DT),
-        solver=solver,
+        solver=section(solver),
     )
     scene.write(tmp_path)
     options = ("--set", "solver.int-properties={staggered = 1}")
@@ -98,8 +107,7 @@ def test_collision(mpm3d: Run, tmp_path: Path, transfer: str, solver: str) -> No
         dt=dt,
         t_stop=steps * dt,
         rate=1.0 / (steps * dt),
-        solver=solver,
-        solver_lines=TRANSFERS[transfer],
+        solver=section(solver, TRANSFERS[transfer]),
     )
     digests = []
     for threads in (1, 2):
@@ -138,7 +146,7 @@ def test_energy_of_a_collision(mpm3d: Run, tmp_path: Path, solver: str) -> None:
         dt=0.3 / cells,
         t_stop=6.0,
         rate=1.0 / 6.0,
-        solver=solver,
+        solver=section(solver),
     )
     run_scene(mpm3d, scene, tmp_path)
     series = [read_series(tmp_path / "frames", "fpd", i, name) for i, name in enumerate("ab")]

@@ -90,6 +90,7 @@ contains
       if (allocated(error)) return
       model%step = model%step + 1_lp
       model%time = model%time + dt
+      model%last_dt = dt
     end do
   end subroutine advance
 

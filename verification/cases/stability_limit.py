@@ -1,0 +1,260 @@
+"""Time steps below and above the stability limit, on grids filled with points."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from functools import cache
+
+import numpy as np
+from _scheme import LinearScheme
+from _waves import DENSITY, SLIP, STICK, YOUNG, Walls, symbols, wave_speed
+from harness.case import Case, Finding, Measures, Output, Parameters, Results, below, near
+from harness.norms import linf
+from harness.scene import DIM, Body, Scene, lattice, pressure_wave_modulus, shear_modulus
+
+#: Cells along each direction when the row does not say.
+CELLS = {1: 24, 2: 8, 3: 5, 4: 6, 5: 8}
+STEPS, FRAMES = 1500, 60
+#: Velocities at the start, over the speed of waves.
+NOISE = 1e-10
+STABLE_STEP = re.compile(r"stable step (\S+) s")
+
+
+def counts(p: Parameters) -> list[int]:
+    """Return the cells of the grid; in TYPE 4 the height does not matter."""
+    n = int(p.number("grid", CELLS[p.sim_type]))
+    return [n, 3] if p.sim_type == 4 else [n] * DIM[p.sim_type]
+
+
+def spacing(p: Parameters) -> list[float]:
+    """Return the sizes of the cells; `flat` shortens them along the last direction."""
+    h = [1.0 / counts(p)[0]] * DIM[p.sim_type]
+    h[-1] *= p.number("flat", 1.0)
+    return h
+
+
+def scene_with(p: Parameters, dt: float) -> Scene:
+    """Return a filled grid with smooth walls and noise in the velocities."""
+    cells, h = counts(p), spacing(p)
+    shift = p.number("shift", 0.0)
+    lengths = [n * s for n, s in zip(cells, h, strict=True)]
+    points = lattice(
+        p.sim_type,
+        [shift * s for s in h],
+        [(n + shift) * s for n, s in zip(cells, h, strict=True)],
+        [n * p.ppc for n in cells],
+        DENSITY,
+    )
+    noise = np.random.default_rng(1).uniform(-1.0, 1.0, points.velocity.shape)
+    points.velocity[:] = NOISE * wave_speed(p) * noise
+    body = Body("body", points, YOUNG, p.number("nu", 0.0), walls(p).section())
+    return Scene(p.sim_type, lengths, cells, [body], STEPS * dt, dt, FRAMES, p.mapping)
+
+
+def walls(p: Parameters) -> Walls:
+    """Return walls all around.
+
+    Points that are shifted along a smooth wall leave its nodes little mass; no slip holds them.
+    """
+    code = STICK if p.text("walls", "slip") == "stick" else SLIP
+    return Walls([code] * (2 * DIM[p.sim_type]))
+
+
+def needs_matrices(p: Parameters) -> bool:
+    """Tell whether waves do not split into sines: around an axis, or with shifted points."""
+    return p.sim_type == 4 or p.number("shift", 0.0) > 0.0
+
+
+def waves(p: Parameters) -> list[tuple[float, float]]:
+    """Return stiffness and filter of all waves between the walls of a grid of symmetric points.
+
+    Components are sines along themselves and cosines along the other directions.
+    """
+    cells, h, nu = counts(p), spacing(p), p.number("nu", 0.0)
+    m, g = pressure_wave_modulus(YOUNG, nu), shear_modulus(YOUNG, nu)
+    dim, result = len(cells), []
+    for numbers in itertools.product(*[range(n + 1) for n in cells]):
+        means = [
+            symbols(np.pi * j / n, p.ppc, averaged=p.mapping == "cpdi")
+            for j, n in zip(numbers, cells, strict=True)
+        ]
+        mu = float(np.prod([one.mu for one in means]))
+        gradients = np.zeros((dim, dim))
+        for a, b in itertools.product(range(dim), repeat=2):
+            factors = [one.mu for one in means]
+            if a == b:
+                factors[a] = means[a].k2 / h[a] ** 2
+            else:
+                factors[a], factors[b] = (
+                    means[a].mixed.imag / h[a],
+                    means[b].mixed.imag / h[b],
+                )
+            gradients[a, b] = float(np.prod(factors))
+        total = float(np.trace(gradients))
+        stiffness = (m - g) * gradients + g * total * np.eye(dim)
+        live = [a for a in range(dim) if 0 < numbers[a] < cells[a]]
+        for value in np.linalg.eigvalsh(stiffness[np.ix_(live, live)]) if live else []:
+            result.append((float(value) / DENSITY, mu))
+        if p.sim_type == 5:
+            result.append((g * total / DENSITY, mu))
+    return result
+
+
+@cache
+def scheme_of(key: tuple[object, ...]) -> LinearScheme:
+    """Return the matrices of a run; `key` are its parameters without the resolution."""
+    sim_type, mapping, ppc, options = key
+    p = Parameters("stability_limit", sim_type, mapping, "-", ppc, 100, dict(options))
+    return LinearScheme(scene_with(p, 1.0), walls(p).codes)
+
+
+def scheme(p: Parameters) -> LinearScheme:
+    """Return the matrices of a run."""
+    return scheme_of((p.sim_type, p.mapping, p.ppc, tuple(sorted(p.options.items()))))
+
+
+def limit(p: Parameters) -> float:
+    """Return the largest stable time step."""
+    shortest = min(spacing(p)) / wave_speed(p)
+    if needs_matrices(p):
+        return scheme(p).limit(0.2 * shortest, 2.5 * shortest)
+    return float(min(np.sqrt(4.0 / ((2.0 - mu) * k)) for k, mu in waves(p) if k > 0.0))
+
+
+def growth(p: Parameters, dt: float) -> float:
+    """Return the factor by which the fastest growing wave grows in a step."""
+    if needs_matrices(p):
+        return scheme(p).growth(dt)
+    largest = 0.0
+    for k, mu in waves(p):
+        z = k * dt**2
+        values = np.linalg.eigvals(np.array([[1.0, mu], [-z, 1.0 - z]]))
+        largest = max(largest, float(np.max(np.abs(values))))
+    return largest
+
+
+def scene(p: Parameters) -> Scene:
+    """Return the filled grid; the resolution is the time step in percent of the limit."""
+    return scene_with(p, 0.01 * p.cells * limit(p))
+
+
+def measure(p: Parameters, out: Output) -> Measures:
+    """Return how the velocities grow, how the run ended, and what the program says of the step."""
+    times, speeds = [], []
+    start = NOISE * wave_speed(p)
+    for frame in out.points():
+        times.append(frame.time)
+        speeds.append(linf(frame["velocity"]) / start)
+    t, v = np.array(times), np.array(speeds)
+    dt = out.scene.dt
+    # The fastest wave rules where it has grown a thousandfold, and is small still.
+    grown = (v > 1e3) & (v < 1e-3 / NOISE)
+    rate = np.nan
+    if np.count_nonzero(grown) >= 3:
+        rate = float(np.polyfit(t[grown] / dt, np.log(v[grown]), 1)[0])
+    printed = STABLE_STEP.search(out.text)
+    unit = min(spacing(p)) / wave_speed(p)
+    return {
+        "growth": float(np.max(v[1:])) if len(v) > 1 else np.inf,
+        "failed": float(out.status == 3),
+        "warned": float("above the stable step" in out.errors),
+        "rate": rate,
+        "theory_rate": float(np.log(growth(p, dt))),
+        "limit": limit(p) / unit,
+        "shifted": float(p.number("shift", 0.0) > 0.0),
+        "printed": (float(printed[1]) if printed else np.nan) / unit,
+    }
+
+
+def judge(r: Results) -> list[Finding]:
+    """Compare with theory."""
+    findings = []
+    first = r.measures[0]
+    findings += [
+        Finding(
+            "stable step of the program over the limit",
+            first["printed"] / first["limit"],
+            0.0 if first["shifted"] else 0.8,
+            1.0,
+            np.nan,
+            "safe, and within 20 % of where a grid filled with symmetric points turns unstable",
+        ),
+        Finding("limit c dt/h", first["limit"]),
+    ]
+    for p, m in r:
+        label = f"{p.cells} % of the limit"
+        if p.cells < 100:
+            findings += [
+                below(
+                    f"growth, {label}",
+                    m["growth"],
+                    100.0,
+                    f"all waves decay or stay over {STEPS} steps; 100 for what waves that are not "
+                    "orthogonal add up to",
+                ),
+                below(f"failed, {label}", m["failed"], 0.0, "a stable run ends well"),
+            ]
+            continue
+        findings += [
+            Finding(
+                f"failed, {label}",
+                m["failed"],
+                0.0 if m["shifted"] else 1.0,
+                1.0,
+                1.0,
+                "waves grow until points run through cells, and the run stops with status 3; "
+                "shifted points soon cross grid lines, which may change their limit",
+            ),
+            Finding(
+                f"growth, {label}",
+                m["growth"],
+                1e3,
+                np.inf,
+                np.nan,
+                "waves grow from the noise until points cross cells",
+            ),
+            Finding(
+                f"warned, {label}",
+                m["warned"],
+                1.0,
+                1.0,
+                1.0,
+                "the program warns of a step above its limit, and names it when the run stops",
+            ),
+        ]
+        if np.isfinite(m["rate"]):
+            findings.append(
+                near(
+                    f"logarithm of the growth in a step, {label}",
+                    m["rate"],
+                    m["theory_rate"],
+                    0.02,
+                    "largest eigenvalue of a step; 2 %: other waves in the fit",
+                )
+            )
+    return findings
+
+
+CASE = Case(
+    family="Hard cases",
+    title="Time steps around the stability limit",
+    statement=r"""
+A grid filled with points, smooth walls all around, noise of $10^{-10}c$ in the velocities, 1500
+steps. The resolution of this case is the time step in percent of the limit of theory. Measured: how
+the velocities grow, how the run ends, and the stable step that the program prints.
+
+Expected: a wave of the discrete equations with stiffness $K$ and filter $\mu$ is stable for
+$K\Delta t^2 \le 4/(2-\mu)$. On symmetric points the worst of all waves runs along one direction, in
+any dimension: $c\Delta t/h \le 1/\sqrt{s(1+bs)}$, $b = 2/3+1/(3n^2)$, $s = \cos^2(\pi/2N)$ on $N$
+cells; waves in other directions are filtered more. Around an axis (TYPE 4), and with shifted
+points, the limit is that of the eigenvalues of the linear scheme. Below it nothing grows; above it
+the run fails with the growth of the largest eigenvalue, and the program has warned of it. The
+printed step must be safe and within 20 % of the limit.
+""",
+    source="Derived in `docs/verification.md`.",
+    scene=scene,
+    measure=measure,
+    judge=judge,
+    may_fail=True,
+)

@@ -1,0 +1,1 @@
+"""The harness of the verification cases: scenes, runs, norms, checks and reports."""
