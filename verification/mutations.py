@@ -158,10 +158,8 @@ MUTATIONS = (
         "TYPE 4 without the inertia of the rotating basis",
         "src/kernels/advance.f90",
         (
-            (
-                "        angle = dt*v_t/max(x(1, p), r_floor)\n",
-                "        angle = 0.0_wp*v_r*r_floor\n",
-            ),
+            ("        angle = dt*v_t/r\n", "        angle = 0.0_wp*r\n"),
+            ("v_t*min(r/r_new, largest_growth)", "v_t + 0.0_wp*min(r_new, largest_growth)"),
         ),
     ),
     Mutation(

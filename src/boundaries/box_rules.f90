@@ -111,7 +111,7 @@ contains
     real(wp), intent(inout) :: momentum(:)
     !> Force on the node. [N] (nvel)
     real(wp), intent(inout) :: force(:)
-    real(wp) :: largest(3)
+    real(wp) :: largest(3), push
     integer :: rules(3), c, face, n
 
     rules = node_rules(faces, walls, node)
@@ -123,10 +123,15 @@ contains
       n = walls(face)%part%index(node)
       select case (walls(face)%code)
       case (wall_friction)
-        largest(c) = momentum(c)/dt + walls(face)%own_force(n)
-        if (is_lower(face)) largest(c) = -largest(c)
-        largest(c) = walls(face)%friction*max(0.0_wp, largest(c))
-        call fix(c, velocity, momentum, force)
+        push = momentum(c)/dt + walls(face)%own_force(n)
+        if (is_lower(face)) push = -push
+        largest(c) = walls(face)%friction*max(0.0_wp, push)
+        if (.not. walls(face)%unilateral) then
+          call fix(c, velocity, momentum, force)
+        else if (push > 0.0_wp) then
+          ! A force, which the points feel, brings the node to rest.
+          force(c) = -momentum(c)/dt
+        end if
       case (wall_driven)
         force = (mass*walls(face)%vector(:size(force)) - momentum)/dt
         return

@@ -37,6 +37,8 @@ module mpm_box_wall
     integer :: code = wall_free
     !> Code 2: coefficient of friction.
     real(wp) :: friction = 0.0_wp
+    !> Code 2: only pushes, and takes the momentum that it stops from the points.
+    logical :: unilateral = .false.
     !> Codes 4, 6: velocity [m/s]; code 5: traction [Pa], 0 where `held`.
     real(wp) :: vector(3) = 0.0_wp
     !> Code 5: components that are fixed instead.
@@ -88,6 +90,7 @@ contains
     allocate (walls(faces%n))
     do face = 1, faces%n
       walls(face)%code = properties%integer(trim(face_names(face)))
+      walls(face)%unilateral = properties%integer('unilateral') == 1
     end do
     call check_periodic(faces, properties, walls, error)
     if (allocated(error)) return

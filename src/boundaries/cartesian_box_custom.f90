@@ -61,6 +61,9 @@ contains
                                    &with bounded traction', lower=wall_free, upper=wall_bounded, &
                                    types=types_with_dim(axis_of(face)))
     end do
+    call description%add_integer('unilateral', '1: walls of code 2 only push, and take the momentum &
+                                 &that they stop from the points; 0: as mpm_3d', default=0, &
+                                 lower=0, upper=1, by_name=.true.)
     call description%add_real('values', 'by code', 'what the codes take, face by face: 2: mu [-]; &
                               &4: velocity V [m/s], 3 entries; 5: traction t [Pa], 3 entries; &
                               &6: V [m/s] and the largest traction tau_max [Pa], 4 entries', &
@@ -78,7 +81,10 @@ contains
                               &tau_max, then entries that are not used.')
     call description%add_note('Code 2: the normal component is 0; friction is at most mu times &
                               &the force that stops the body''s own closing motion, forces of &
-                              &contacts left out, and acts on all motion that is left.')
+                              &contacts left out, and acts on all motion that is left. Such a &
+                              &wall also holds a body that leaves, and what its nodes stop stays &
+                              &in the points: friction is not mu times the impulse on the body. &
+                              &With unilateral = 1 it is, to round-off.')
     call description%add_note('Code 4 holds every component at V. Code 5 loads the part of the &
                               &face that is filled with points; NaN in place of a component of t &
                               &fixes that component. Code 6 stops the normal component, then &

@@ -191,7 +191,7 @@ contains
 
   !> Append a property of the list of integers; without `default` it is required.
   pure subroutine description_add_integer(self, name, meaning, default, lower, upper, is_list, &
-                                          types)
+                                          types, by_name)
     !> The description.
     class(description_t), intent(inout) :: self
     !> Name in named entries.
@@ -208,6 +208,8 @@ contains
     logical, intent(in), optional :: is_list
     !> TYPEs in which it exists.
     logical, intent(in), optional :: types(5)
+    !> Has no place in the list: it is given by its name only.
+    logical, intent(in), optional :: by_name
     type(property_t) :: item
 
     item%name = name
@@ -227,6 +229,7 @@ contains
       item%required = .not. is_list
     end if
     if (present(types)) item%types = types
+    if (present(by_name)) item%by_name = by_name
     call append(self%properties, item)
   end subroutine description_add_integer
 

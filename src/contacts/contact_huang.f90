@@ -11,6 +11,7 @@ module mpm_contact_huang
   use mpm_mass_gradient, only: mass_gradient
   use mpm_nodes, only: nodes_t
   use mpm_properties, only: properties_t
+  use mpm_stencil, only: stencil_t
   use mpm_threads, only: useful_threads
   use mpm_window, only: intersect, window_t
   implicit none
@@ -70,6 +71,11 @@ contains
     call description%add_note('The normals of two bodies at a node are not opposite to each other; &
                               &the unit normals are averaged. mpm_3d takes that of the first body &
                               &(normals = 0). Nodes where the normal has no direction are skipped.')
+    call description%add_note('normals = 1: at nodes on faces of the grid normals lie in the face, &
+                              &as if bodies went on beyond it. With normals = 0 they tilt there, and &
+                              &bodies between side walls leak past each other.')
+    call description%add_note('normals = 1 tilts at corners of a body on a flat one, which hold it: &
+                              &there use normals = 0 and name the flat body first.')
     call description%add_note('Contact begins when both bodies reach the same node, up to one cell &
                               &before their points meet.')
     call description%add_note('The fields are 0 at nodes that only one body reaches.')
@@ -230,23 +236,25 @@ contains
     end associate
     deallocate (self%normal)
     allocate (self%normal(first%nodes%kin%nvel, nn))
-    call body_normals(first, self%window, h, self%normal)
+    call body_normals(first, self%window, h, self%average_normals, self%normal)
     if (.not. self%average_normals) return
     allocate (other(first%nodes%kin%nvel, nn))
-    call body_normals(second, self%window, h, other)
+    call body_normals(second, self%window, h, .true., other)
     ! Each is a unit vector or 0, so that one without a direction leaves the other.
     self%normal = self%normal - other
     call normalise(self%normal, spread(tiny_normal, 1, nn))
   end subroutine contact_huang_find_normals
 
   !> Unit normals out of one body.
-  subroutine body_normals(body, window, h, normal)
+  subroutine body_normals(body, window, h, level, normal)
     !> The body.
     class(body_t), intent(in) :: body
     !> The nodes wanted.
     type(window_t), intent(in) :: window
     !> Spacing of the grid. [m]
     real(wp), intent(in) :: h
+    !> The body goes on beyond the faces of the grid; otherwise it ends there, as in mpm_3d.
+    logical, intent(in) :: level
     !> Unit vectors, or 0 where the mass around is balanced. (nvel, nn)
     real(wp), intent(out) :: normal(:, :)
     real(wp) :: floor(size(normal, 2))
@@ -257,6 +265,7 @@ contains
       call mass_gradient(points%kin, points%stencil, window, n, points%order(:n), &
                          points%row_offset, points%lo(points%kin%dim), points%key(:n), &
                          points%x(:, :n), points%extent(:n), points%mass(:n), normal)
+      if (level) call level_at_faces(points%stencil, window, normal)
     end associate
     hi = window%hi()
     do k = window%lo(3), hi(3)
@@ -269,6 +278,37 @@ contains
     end do
     call normalise(normal, floor)
   end subroutine body_normals
+
+  !> Drop the components across faces of the grid at the nodes of these faces.
+  !!
+  !! The grid cuts bodies off there: their gradient lacks the mass beyond the face and points out of
+  !! the grid. A vector that would vanish keeps its components.
+  pure subroutine level_at_faces(stencil, window, normal)
+    !> Basis of the body.
+    type(stencil_t), intent(in) :: stencil
+    !> Nodes of the vectors.
+    type(window_t), intent(in) :: window
+    !> Vectors. (nvel, nn)
+    real(wp), intent(inout) :: normal(:, :)
+    real(wp) :: levelled(size(normal, 1))
+    integer :: i, j, k, d, node(3), hi(3), here
+
+    hi = window%hi()
+    do k = window%lo(3), hi(3)
+      do j = window%lo(2), hi(2)
+        do i = window%lo(1), hi(1)
+          node = [i, j, k]
+          here = window%index(node)
+          levelled = normal(:, here)
+          do d = 1, stencil%dim
+            if (stencil%periodic(d)) cycle
+            if (node(d) == 0 .or. node(d) == stencil%n_cells(d)) levelled(d) = 0.0_wp
+          end do
+          if (norm2(levelled) > tiny_normal*norm2(normal(:, here))) normal(:, here) = levelled
+        end do
+      end do
+    end do
+  end subroutine level_at_faces
 
   !> Make vectors unit vectors; those not longer than their floor become 0.
   pure subroutine normalise(vectors, floor)

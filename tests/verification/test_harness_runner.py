@@ -202,7 +202,10 @@ def test_changes_repeat_runs(program: Program, tmp_path: Path, cases: Path) -> N
     (cases / "failing.py").write_text("# changed\n")
     run(program, path, [make(8)])
     assert len(calls(program)) == 1
-    (cases / "point.py").write_text((cases / "point.py").read_text() + "# changed\n")
+    (cases / "_shared.py").write_text("# of others\n")
+    run(program, path, [make(8)])
+    assert len(calls(program)) == 1
+    (cases / "point.py").write_text((cases / "point.py").read_text() + "import _shared\n")
     run(program, path, [make(8)])
     assert len(calls(program)) == 2
     (cases / "_shared.py").write_text("# new\n")

@@ -102,9 +102,7 @@ def make_scene(p: Parameters, cells: int, steps: int, frames: int) -> Scene:
         "nu": exact.poisson,
     }
     constants |= dict(zip(NAMES, exact.phases, strict=False))
-    driver = section(
-        "AxisAlignedDriver", constants, {"staggered": int(p.number("staggered", 0))}
-    )
+    driver = section("AxisAlignedDriver", constants, {"staggered": int(p.number("staggered", 0))})
     body = Body("box", points, YOUNG, exact.poisson, "CartesianSmoothBox")
     return Scene(
         p.sim_type,

@@ -24,8 +24,8 @@ LENGTH, DENSITY, SPEED = 1.0, 1000.0, 100.0
 FRAMES = 100
 #: Gap at the start beyond that at which contact begins, in cells.
 APPROACH = 0.25
-#: 1 - e of two bars with the linear functions averaged over their domains (CPDI): a prototype of
-#: other authorship, v_rel = 0.05 c, Courant number 0.3, by cells along a bar.
+#: 1 - e of two bars by a small separate code, with linear functions averaged over whole domains
+#: (CPDI), v_rel = 0.05 c, Courant number 0.3, by cells along a bar.
 PROTOTYPE = {20: 0.064, 40: 0.031, 80: 0.0156, 160: 0.0080}
 
 
@@ -475,7 +475,12 @@ def judge_implicit(run: Collision, m: Measures, label: str) -> list[Finding]:
         bound = PROTOTYPE.get(p.cells)
         if bound is not None:
             findings.append(
-                below(f"1 - e, {label}", m["defect"], 1.3 * bound, "a prototype's value, times 1.3")
+                below(
+                    f"1 - e, {label}",
+                    m["defect"],
+                    1.3 * bound,
+                    "1.3 times the value of a small separate code",
+                )
             )
     return findings
 

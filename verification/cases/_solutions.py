@@ -68,9 +68,9 @@ class Vortex(Solution):
         e_r = turned(arm / np.maximum(radius, 1e-300)[:, None], g * shape)
         e_t = turned(e_r, 0.5 * np.pi)
         normal, shear = self.shear * (1.0 - np.cos(k)), self.shear * np.sin(k)
-        return normal[:, None, None] * (dyad(e_t, e_t) - dyad(e_r, e_r)) + shear[
-            :, None, None
-        ] * (dyad(e_r, e_t) + dyad(e_t, e_r))
+        return normal[:, None, None] * (dyad(e_t, e_t) - dyad(e_r, e_r)) + shear[:, None, None] * (
+            dyad(e_r, e_t) + dyad(e_t, e_r)
+        )
 
     def scales(self) -> tuple[float, float, float]:
         """Return A R, pi A R at R = 1 m, and G times the largest shear, 7.066 A."""

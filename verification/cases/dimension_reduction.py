@@ -124,9 +124,7 @@ def judge(r: Results) -> list[Finding]:
         " cell crossings"
     )
     findings = [
-        below(f"{name}, {p.cells} cells", m[name], 1e-10, why)
-        for p, m in r
-        for name in NAMES
+        below(f"{name}, {p.cells} cells", m[name], 1e-10, why) for p, m in r for name in NAMES
     ]
     for p, m in r:
         # With displacements of 0.05 L and cells of L/16 a third of the points and more change cell.

@@ -31,9 +31,7 @@ def scene(p: Parameters) -> Scene:
     t_stop = WAY * h / (DRIFT * c)
     body = Body("bar", points, YOUNG, p.number("nu", 0.3), Walls([FREE] * (2 * dim)).section())
     dt = t_stop / (FRAMES * round(WAY / (DRIFT * CFL * FRAMES)))
-    return Scene(
-        p.sim_type, [n * h for n in grid], grid, [body], t_stop, dt, FRAMES, p.mapping
-    )
+    return Scene(p.sim_type, [n * h for n in grid], grid, [body], t_stop, dt, FRAMES, p.mapping)
 
 
 def measure(p: Parameters, out: Output) -> Measures:

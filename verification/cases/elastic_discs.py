@@ -38,10 +38,7 @@ def scene(p: Parameters) -> Scene:
             for name in ("x", "volume", "mass", "velocity")
         ),
     )
-    sides = (
-        'boundary-class = "CartesianBoxCustom"\n'
-        "    boundary-int-props = {-1, -1, -1, -1, 1, 1}"
-    )
+    sides = 'boundary-class = "CartesianBoxCustom"\n    boundary-int-props = {-1, -1, -1, -1, 1, 1}'
     wave = float(np.sqrt(pressure_wave_modulus(YOUNG, POISSON) / DENSITY))
     return Scene(
         p.sim_type,
@@ -65,7 +62,7 @@ def measure(p: Parameters, out: Output) -> Measures:
         half = len(frame.x) // 2
         if p.sim_type == 2:  # the lattice of one disc is that of the other backwards
             velocity = frame["velocity"]
-            mirror = max(mirror, float(np.max(np.abs(velocity[:half] + velocity[:half - 1 : -1]))))
+            mirror = max(mirror, float(np.max(np.abs(velocity[:half] + velocity[: half - 1 : -1]))))
     t, kinetic, strain, momentum = np.array(rows).T
     total, least = kinetic + strain, int(np.argmin(kinetic))
     measures = {

@@ -21,6 +21,12 @@ The bars of *Two bars collide* under hard conditions.
 - `kind=layer`: bar 2 is one cell thick and fixed to the end of the grid: a rigid wall, $e = 1$.
 - Bars one cell wide between smooth walls: every node of the contact lies on a wall. The walls
   must not matter: all as in TYPE 1.
+- Equal bars with steps close to the limit of the edges. An edge point alone on a node of weight
+  $w$ makes $K = 1/(w h^2)$ once its box is inside the cell, $16 n^2 w/h^2$ before: at most
+  $4n/h^2$, at $w = 1/(4n)$, and the filter is $\mu = w$. The condition $c^2 K \Delta t^2 \le 4/(2
+  - \mu)$ becomes a Courant number of at most $1/\sqrt{2n - 1/4}$: 0.516, 0.417, 0.359 for 2, 3, 4
+  points per cell, less than inside a body (0.756 to 0.770). Contacts hold edges at such weights
+  for long. Runs just below must not gain energy.
 """,
     source="Characteristics of rods.",
     scene=scene,

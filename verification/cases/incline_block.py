@@ -113,7 +113,7 @@ def scene(p: Parameters) -> Scene:
         codes[2 * up] = 2
         block.boundary = (
             'boundary-class = "CartesianBoxCustom"\n'
-            f"    boundary-int-props = {{{', '.join(map(str, codes))}}}\n"
+            f"    boundary-int-props = {{{', '.join(map(str, codes))}, unilateral = 1}}\n"
             f"    boundary-props = {{{run.mu!r}}}"
         )
     else:

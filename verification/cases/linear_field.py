@@ -196,7 +196,8 @@ in the edge cell is $A\,(2/3 - 1/(6 n^2))$ with $n$ points a cell and direction.
 grow with $r$, and the centroid of node $i$ lies at $r_i + a h^2/r_i$, $a = 1/6 + 1/(12 n^2)$: for
 $v_r = A r$ the radial rate between nodes $i$ and $i+1$ is $A\,(1 - a h^2/(r_i r_{i+1}))$, the
 hoop rate too large by the like, and in the axis cell both are $A\,(1 + a)$. The swirl $v_\theta =
-A r$ is mapped alike; on the axis it must vanish as $v_r$ does, whatever the wall. These closed
+A r$ is mapped alike; on the axis it must vanish as $v_r$ does, whatever the wall. Stresses are
+told in the basis of the moved point, which has turned by $\Delta t\,v_\theta/r$. These closed
 forms hold to round-off too. The error near the axis is one of lumped masses and does not shrink
 with $h$.
 """,

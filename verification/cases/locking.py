@@ -73,9 +73,7 @@ def scene(p: Parameters) -> Scene:
     dim, h = DIM[p.sim_type], HEIGHT / p.cells
     size = [round(slenderness(p) * p.cells), p.cells, 1][:dim]
     lower = np.array([0.0, MARGIN, 0.0][:dim])
-    points = lattice(
-        p.sim_type, lower * h, (lower + size) * h, [n * p.ppc for n in size], DENSITY
-    )
+    points = lattice(p.sim_type, lower * h, (lower + size) * h, [n * p.ppc for n in size], DENSITY)
     counts = [size[0] + MARGIN, size[1] + 2 * MARGIN, 1][:dim]
     walls = {"x_lower": 0}
     if dim == 3:

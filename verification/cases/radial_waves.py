@@ -141,9 +141,7 @@ def scene(p: Parameters) -> Scene:
     t_stop = 2.0 * np.pi / (wave_number(p) * c)
     body = Body("body", points, YOUNG, p.number("nu", 0.0), walls(p).section())
     dt = stable_dt(h, 1, c, t_stop, p.number("cfl", 0.2), FRAMES)
-    return Scene(
-        p.sim_type, [n * h for n in cells], cells, [body], t_stop, dt, FRAMES, p.mapping
-    )
+    return Scene(p.sim_type, [n * h for n in cells], cells, [body], t_stop, dt, FRAMES, p.mapping)
 
 
 def measure(p: Parameters, out: Output) -> Measures:

@@ -117,9 +117,7 @@ def scene(p: Parameters) -> Scene:
     body = Body("body", points, YOUNG, p.number("nu", 0.3), Walls([code] * (2 * dim)).section())
     t_stop, c = 2.0 * np.pi / frequency(p), np.sqrt(moduli(p)[0] / DENSITY)
     dt = stable_dt(h, 1, c, t_stop, p.number("cfl", 0.2), FRAMES)
-    return Scene(
-        p.sim_type, [LENGTH] * dim, [p.cells] * dim, [body], t_stop, dt, FRAMES, p.mapping
-    )
+    return Scene(p.sim_type, [LENGTH] * dim, [p.cells] * dim, [body], t_stop, dt, FRAMES, p.mapping)
 
 
 def wave(p: Parameters) -> tuple[DiscreteWave, float]:

@@ -13,9 +13,7 @@ from harness.scene import DIM, Scene, stable_dt
 def solution(p: Parameters) -> RotatingBlock:
     """Return the exact solution of a row: E = 1 Pa, so that waves move with 1 m/s."""
     spin = float(0.2 * np.pi)
-    exact = block(
-        p.sim_type, DIM[p.sim_type], p.number("amplitude", 0.02), 1.0, spin, float(np.pi)
-    )
+    exact = block(p.sim_type, DIM[p.sim_type], p.number("amplitude", 0.02), 1.0, spin, float(np.pi))
     exact.time = 0.2
     return exact
 

@@ -48,9 +48,7 @@ def elastica(k: float, steps: int = 2000) -> tuple[Array, Array, Array]:
         state[0] = [0.0, 0.0, 0.0, curvature]
 
         def rate(s: float, u: Array) -> Array:
-            return np.array(
-                [math.cos(u[2]), math.sin(u[2]), u[3], -k * (1.0 - s) * math.cos(u[2])]
-            )
+            return np.array([math.cos(u[2]), math.sin(u[2]), u[3], -k * (1.0 - s) * math.cos(u[2])])
 
         for i in range(steps):
             s, u = i * ds, state[i]
@@ -85,9 +83,7 @@ def scene(p: Parameters) -> Scene:
     sag = math.ceil(1.02 * float(np.max(elastica(load(p), 200)[1])) * size[0])
     counts = [size[0] + MARGIN, size[1] + sag + 2 * MARGIN]
     lower = np.array([0.0, sag + MARGIN])
-    points = lattice(
-        p.sim_type, lower * h, (lower + size) * h, [n * p.ppc for n in size], DENSITY
-    )
+    points = lattice(p.sim_type, lower * h, (lower + size) * h, [n * p.ppc for n in size], DENSITY)
     c = math.sqrt(pressure_wave_modulus(YOUNG, p.number("nu", 0.0)) / DENSITY)
     t_stop = (RAMP + SETTLE) * period(p)
     steps = math.ceil(t_stop * c / (p.number("cfl", 0.25) * h))

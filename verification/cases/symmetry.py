@@ -106,9 +106,7 @@ def make(p: Parameters, copy: Copy) -> Points:
     move = np.zeros(dim)
     move[-1] = SPACING
     count = [p.cells * p.ppc] * dim
-    points = lattice(
-        p.sim_type, lower + move, upper + move, count, DENSITY, lambda x: motion(p, x)
-    )
+    points = lattice(p.sim_type, lower + move, upper + move, count, DENSITY, lambda x: motion(p, x))
     x, v = np.zeros((len(points), 3)), np.zeros((len(points), 3))
     x[:, :dim], v[:, :nvel] = points.x, points.velocity
     x = (x - m) @ copy.q.T + m + copy.offset * SPACING

@@ -48,9 +48,7 @@ def scene(p: Parameters) -> Scene:
     driver = section("VortexDriver", constants, {"staggered": 1})
     dt = stable_dt(SIDE, p.cells, exact.wave_speed, 1.0, p.number("cfl", 0.2), FRAMES)
     body = Body("slab", points, YOUNG, POISSON, "CartesianSmoothBox")
-    return Scene(
-        p.sim_type, lengths, cells, [body], 1.0, dt, FRAMES, p.mapping, driver=driver
-    )
+    return Scene(p.sim_type, lengths, cells, [body], 1.0, dt, FRAMES, p.mapping, driver=driver)
 
 
 def measure(p: Parameters, out: Output) -> Measures:

@@ -26,6 +26,8 @@ TIME_LIMIT = 1800
 #: Loops are timed at least so often and so long, but a long one once. [-], [s]
 TIMING_RUNS, TIMING_SECONDS = 3, 0.2
 LOOP = re.compile(r"^done: .* in (.*), (\S+) ns per point and step", re.MULTILINE)
+#: What cases share, in their imports.
+SHARED = re.compile(r"^(?:from|import) (_\w+)", re.MULTILINE)
 HARNESS = Path(__file__).resolve().parent
 
 
@@ -48,9 +50,15 @@ class Program:
 
 def sources_digest(case: str) -> str:
     """Return a digest of the files that decide what a run is and how it is measured."""
-    harness = [HARNESS / f"{name}.py" for name in ("scene", "frames", "norms", "theory")]
-    shared = sorted([*CASES.glob("_*.py"), *harness])
-    return digest(*[path.read_text() for path in [*shared, CASES / f"{case}.py"]])
+    paths = [HARNESS / f"{name}.py" for name in ("scene", "frames", "norms", "theory")]
+    waiting, known = [CASES / f"{case}.py"], set()
+    while waiting:
+        path = waiting.pop()
+        if path in known or not path.exists():
+            continue
+        known.add(path)
+        waiting += [CASES / f"{name}.py" for name in SHARED.findall(path.read_text())]
+    return digest(*[path.read_text() for path in [*paths, *sorted(known)]])
 
 
 def machine() -> str:
