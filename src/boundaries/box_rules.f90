@@ -185,7 +185,14 @@ contains
     do c = 1, size(velocity)
       face = 2*c - merge(1, 0, rules(c) > 0)
       select case (rules(c))
-      case (fixed, wall_friction, -wall_friction, wall_bounded, -wall_bounded)
+      case (wall_friction, -wall_friction)
+        if (still .or. .not. walls(face)%unilateral) then
+          velocity(c) = 0.0_wp
+        else
+          ! It stops what closes, and lets go what leaves.
+          velocity(c) = merge(max(0.0_wp, velocity(c)), min(0.0_wp, velocity(c)), is_lower(face))
+        end if
+      case (fixed, wall_bounded, -wall_bounded)
         velocity(c) = 0.0_wp
       case (wall_driven, -wall_driven)
         velocity = 0.0_wp
