@@ -26,12 +26,14 @@ AXES = "xyz"
 
 @dataclass(frozen=True)
 class Scene:
-    """A block in a box: simulation TYPE, basis flag of the solver, class of the grid."""
+    """A block in a box: simulation TYPE, basis flag, grid, solver and its transfer."""
 
     name: str
     sim_type: int
     cpdi: int
     grid: str = "CartesianLinear"
+    solver: str = "ExplicitUSL"
+    transfer: str = ""
 
 
 SCENES = (
@@ -48,6 +50,13 @@ SCENES = (
     Scene("3d-ugimp", 3, 0, "CartesianUGIMP"),
     Scene("3d-quadratic", 3, 0, "CartesianQuadratic"),
     Scene("3d-cubic", 3, 0, "CartesianCubic"),
+    Scene("3d-linear-musl", 3, 0, "ExplicitMUSL"),
+    Scene("3d-linear-usf", 3, 0, "ExplicitUSF"),
+    Scene("3d-linear-blend", 3, 0, transfer="properties = {flip = 0.99}"),
+    Scene("3d-linear-apic", 3, 0, transfer="str-properties = {APIC}"),
+    Scene("3d-linear-xpic-2", 3, 0, transfer="str-properties = {XPIC}"),
+    Scene("3d-cpdi-apic", 3, 1, transfer="str-properties = {APIC}"),
+    Scene("3d-cpdi-mls", 3, 1, transfer="str-properties = {MLS}"),
 )
 
 
@@ -78,7 +87,7 @@ def write_scene(scene: Scene, folder: Path, points: int) -> int:
         f"""job {{ t = 0  dt = {dt!r}  TYPE = {scene.sim_type} }}
 serializer {{ class = MinimalVTK  properties = {{0}}  str-properties = {{frames, save, bench}} }}
 driver {{ class = DefaultDriver  properties = {{1}} }}
-solver {{ class = ExplicitUSL  int-properties = {{{scene.cpdi}, 1}} }}
+solver {{ class = {scene.solver}  int-properties = {{{scene.cpdi}, 1}}  {scene.transfer} }}
 grid {{ class = {scene.grid}  properties = {{{box}}}  int-properties = {{{counts}}} }}
 body {{
   class = DefaultBody  name = block  point-file = block.points

@@ -8,6 +8,7 @@ module mpm_boundary
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
+  use mpm_window, only: window_t
   implicit none
   private
   public :: boundary_t
@@ -21,6 +22,8 @@ module mpm_boundary
     procedure :: generate => boundary_generate
     !> Change momentum, velocity and force of the nodes, after the contacts.
     procedure(apply_i), deferred :: apply
+    !> Give components of nodal velocities that the walls prescribe their values.
+    procedure :: prescribe => boundary_prescribe
     !> Send the fields of a frame.
     procedure :: write_fields => boundary_write_fields
   end type boundary_t
@@ -75,6 +78,22 @@ contains
     associate (unused => self, unused_grid => grid, unused_points => points, unused_nodes => nodes)
     end associate
   end subroutine boundary_generate
+
+  !> Give components of nodal velocities that the walls prescribe their values: none here.
+  subroutine boundary_prescribe(self, window, still, velocity)
+    !> The boundary.
+    class(boundary_t), intent(in) :: self
+    !> Nodes that have memory.
+    type(window_t), intent(in) :: window
+    !> Take 0 for the velocity of walls that move, as for a difference of two velocities.
+    logical, intent(in) :: still
+    !> Nodal velocities. [m/s] (nvel, nn)
+    real(wp), intent(inout) :: velocity(:, :)
+
+    associate (unused => self, unused_window => window, unused_still => still, &
+               unused_velocity => velocity)
+    end associate
+  end subroutine boundary_prescribe
 
   !> Most rules have no field of their own.
   subroutine boundary_write_fields(self, grid, nodes, writer)

@@ -57,6 +57,8 @@ module mpm_box_faces
     procedure :: fix => box_faces_fix
     !> Mark components as fixed in a mask for output.
     procedure :: mark => box_faces_mark
+    !> Set components of a nodal field to a value on a face.
+    procedure :: set => box_faces_set
   end type box_faces_t
 
 contains
@@ -249,6 +251,37 @@ contains
     end do
   end subroutine box_faces_fix
 
+  !> Set components of a nodal field to a value on a face that is a wall.
+  pure subroutine box_faces_set(self, face, first, last, value, window, field)
+    !> The faces.
+    class(box_faces_t), intent(in) :: self
+    !> Face, 1 to `n`.
+    integer, intent(in) :: face
+    !> First component.
+    integer, intent(in) :: first
+    !> Last component.
+    integer, intent(in) :: last
+    !> The value.
+    real(wp), intent(in) :: value
+    !> Nodes that have memory.
+    type(window_t), intent(in) :: window
+    !> Field of the window's nodes. (nvel, nn)
+    real(wp), intent(inout) :: field(:, :)
+    type(window_t) :: part
+    integer :: hi(3), i, j, k
+
+    if (self%periodic(axis_of(face))) return
+    part = self%part(face, window)
+    hi = part%hi()
+    do k = part%lo(3), hi(3)
+      do j = part%lo(2), hi(2)
+        do i = part%lo(1), hi(1)
+          field(first:last, window%index([i, j, k])) = value
+        end do
+      end do
+    end do
+  end subroutine box_faces_set
+
   !> Mark components as fixed (1) in a mask for output, on faces that are walls.
   pure subroutine box_faces_mark(self, face, first, last, window, mask)
     !> The faces.
@@ -263,19 +296,8 @@ contains
     type(window_t), intent(in) :: window
     !> Mask of the window's nodes. (nvel, nn)
     real(wp), intent(inout) :: mask(:, :)
-    type(window_t) :: part
-    integer :: hi(3), i, j, k
 
-    if (self%periodic(axis_of(face))) return
-    part = self%part(face, window)
-    hi = part%hi()
-    do k = part%lo(3), hi(3)
-      do j = part%lo(2), hi(2)
-        do i = part%lo(1), hi(1)
-          mask(first:last, window%index([i, j, k])) = 1.0_wp
-        end do
-      end do
-    end do
+    call self%set(face, first, last, 1.0_wp, window, mask)
   end subroutine box_faces_mark
 
 end module mpm_box_faces

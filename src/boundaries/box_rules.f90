@@ -6,7 +6,7 @@ module mpm_box_rules
   use mpm_kinds, only: wp
   implicit none
   private
-  public :: apply_rules, hold_increment, node_rules
+  public :: apply_rules, hold_increment, node_rules, prescribe
 
   !> Rule of a component that is fixed; the other rules are the codes of the walls.
   integer, parameter :: fixed = 1
@@ -166,6 +166,47 @@ contains
       end do
     end if
   end subroutine hold_increment
+
+  !> Give components of a node's velocity that its walls prescribe their values.
+  pure subroutine prescribe(faces, walls, node, still, velocity)
+    !> The faces of the grid.
+    type(box_faces_t), intent(in) :: faces
+    !> Their walls. (faces%n)
+    type(box_wall_t), intent(in) :: walls(:)
+    !> Grid indices, from 0.
+    integer, intent(in) :: node(3)
+    !> Take 0 for the velocity of walls that move.
+    logical, intent(in) :: still
+    !> Velocity of the node. [m/s] (nvel)
+    real(wp), intent(inout) :: velocity(:)
+    integer :: rules(3), c, face
+
+    rules = node_rules(faces, walls, node)
+    do c = 1, size(velocity)
+      face = 2*c - merge(1, 0, rules(c) > 0)
+      select case (rules(c))
+      case (wall_friction, -wall_friction)
+        if (still .or. .not. walls(face)%unilateral) then
+          velocity(c) = 0.0_wp
+        else
+          ! It stops what closes, and lets go what leaves.
+          velocity(c) = merge(max(0.0_wp, velocity(c)), min(0.0_wp, velocity(c)), is_lower(face))
+        end if
+      case (fixed, wall_bounded, -wall_bounded)
+        velocity(c) = 0.0_wp
+      case (wall_driven, -wall_driven)
+        velocity = 0.0_wp
+        if (.not. still) velocity = walls(face)%vector(:size(velocity))
+        exit
+      case (wall_traction, -wall_traction)
+        where (walls(face)%held(:size(velocity))) velocity = 0.0_wp
+        exit
+      case default
+        cycle
+      end select
+    end do
+    if (is_smooth_axis(faces, walls, node)) velocity([1, 3]) = 0.0_wp
+  end subroutine prescribe
 
   !> Fix one component.
   pure subroutine fix(c, velocity, momentum, force)

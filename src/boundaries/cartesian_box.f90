@@ -10,6 +10,7 @@ module mpm_cartesian_box
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
+  use mpm_window, only: window_t
   implicit none
   private
   public :: cartesian_box_t
@@ -23,6 +24,7 @@ module mpm_cartesian_box
     procedure, nopass :: describe => cartesian_box_describe
     procedure :: init => cartesian_box_init
     procedure :: apply => cartesian_box_apply
+    procedure :: prescribe => cartesian_box_prescribe
     procedure :: write_fields => cartesian_box_write_fields
   end type cartesian_box_t
 
@@ -85,6 +87,25 @@ contains
       call self%faces%fix(face, 1, self%faces%kin%nvel, nodes)
     end do
   end subroutine cartesian_box_apply
+
+  !> Nodes of all faces are at rest.
+  subroutine cartesian_box_prescribe(self, window, still, velocity)
+    !> The boundary.
+    class(cartesian_box_t), intent(in) :: self
+    !> Nodes that have memory.
+    type(window_t), intent(in) :: window
+    !> Take 0 for the velocity of walls that move: none does.
+    logical, intent(in) :: still
+    !> Nodal velocities. [m/s] (nvel, nn)
+    real(wp), intent(inout) :: velocity(:, :)
+    integer :: face
+
+    associate (unused => still)
+    end associate
+    do face = 1, self%faces%n
+      call self%faces%set(face, 1, self%faces%kin%nvel, 0.0_wp, window, velocity)
+    end do
+  end subroutine cartesian_box_prescribe
 
   !> Send the components that are held.
   subroutine cartesian_box_write_fields(self, grid, nodes, writer)

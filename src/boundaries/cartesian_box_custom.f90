@@ -2,7 +2,7 @@
 module mpm_cartesian_box_custom
   use mpm_boundary, only: boundary_t
   use mpm_box_faces, only: axis_names, axis_of, box_faces_t, face_names, is_lower
-  use mpm_box_rules, only: apply_rules, hold_increment, node_rules
+  use mpm_box_rules, only: apply_rules, hold_increment, node_rules, prescribe
   use mpm_box_wall, only: box_wall_t, read_walls, wall_bounded, wall_free, wall_friction, &
                           wall_traction
   use mpm_description, only: description_t, types_with_dim
@@ -32,6 +32,7 @@ module mpm_cartesian_box_custom
     procedure :: init => custom_init
     procedure :: generate => custom_generate
     procedure :: apply => custom_apply
+    procedure :: prescribe => custom_prescribe
     procedure :: write_fields => custom_write_fields
   end type cartesian_box_custom_t
 
@@ -181,9 +182,9 @@ contains
 
   !> Area of a wall at its nodes, times the fraction that is filled with points.
   !!
-  !! On faces of constant z in TYPE 4 the area is that of the points, sum_p N_i V_p over half a cell:
-  !! it belongs to the nodal masses and forces, so that a uniform traction balances a uniform stress,
-  !! which the exact integral of r does not.
+  !! On faces of constant z in TYPE 4 the area is that of the points, sum_p N_i V_p over half a
+  !! cell: it belongs to the nodal masses and forces, so that a uniform traction balances a uniform
+  !! stress, which the exact integral of r does not.
   subroutine fill_area(faces, face, grid, points, wall)
     !> The faces.
     type(box_faces_t), intent(in) :: faces
@@ -270,6 +271,34 @@ contains
       end associate
     end do
   end subroutine custom_apply
+
+  !> Give components that walls prescribe their values on the nodes of all faces.
+  subroutine custom_prescribe(self, window, still, velocity)
+    !> The boundary.
+    class(cartesian_box_custom_t), intent(in) :: self
+    !> Nodes that have memory.
+    type(window_t), intent(in) :: window
+    !> Take 0 for the velocity of walls that move, as for a difference of two velocities.
+    logical, intent(in) :: still
+    !> Nodal velocities. [m/s] (nvel, nn)
+    real(wp), intent(inout) :: velocity(:, :)
+    type(window_t) :: part
+    integer :: face, hi(3), node(3), i, j, k
+
+    do face = 1, self%faces%n
+      part = self%faces%part(face, window)
+      hi = part%hi()
+      do k = part%lo(3), hi(3)
+        do j = part%lo(2), hi(2)
+          do i = part%lo(1), hi(1)
+            node = [i, j, k]
+            if (self%faces%first(node) /= face) cycle
+            call prescribe(self%faces, self%walls, node, still, velocity(:, window%index(node)))
+          end do
+        end do
+      end do
+    end do
+  end subroutine custom_prescribe
 
   !> Send the rule of each component.
   subroutine custom_write_fields(self, grid, nodes, writer)

@@ -10,6 +10,7 @@ module mpm_cartesian_smooth_box
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
+  use mpm_window, only: window_t
   implicit none
   private
   public :: cartesian_smooth_box_t
@@ -23,6 +24,7 @@ module mpm_cartesian_smooth_box
     procedure, nopass :: describe => cartesian_smooth_box_describe
     procedure :: init => cartesian_smooth_box_init
     procedure :: apply => cartesian_smooth_box_apply
+    procedure :: prescribe => cartesian_smooth_box_prescribe
     procedure :: write_fields => cartesian_smooth_box_write_fields
   end type cartesian_smooth_box_t
 
@@ -87,6 +89,26 @@ contains
       if (self%faces%is_axis(face)) call self%faces%fix(face, 3, 3, nodes)
     end do
   end subroutine cartesian_smooth_box_apply
+
+  !> Nodes of all faces are at rest.
+  subroutine cartesian_smooth_box_prescribe(self, window, still, velocity)
+    !> The boundary.
+    class(cartesian_smooth_box_t), intent(in) :: self
+    !> Nodes that have memory.
+    type(window_t), intent(in) :: window
+    !> Take 0 for the velocity of walls that move: none does.
+    logical, intent(in) :: still
+    !> Nodal velocities. [m/s] (nvel, nn)
+    real(wp), intent(inout) :: velocity(:, :)
+    integer :: face
+
+    associate (unused => still)
+    end associate
+    do face = 1, self%faces%n
+      call self%faces%set(face, axis_of(face), axis_of(face), 0.0_wp, window, velocity)
+      if (self%faces%is_axis(face)) call self%faces%set(face, 3, 3, 0.0_wp, window, velocity)
+    end do
+  end subroutine cartesian_smooth_box_prescribe
 
   !> Send the components that are held.
   subroutine cartesian_smooth_box_write_fields(self, grid, nodes, writer)

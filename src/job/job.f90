@@ -111,6 +111,15 @@ contains
       if (allocated(points%load)) then
         bits = bits + storage_size(points%load, lp)*size(points%load, kind=lp)
       end if
+      if (allocated(points%affine)) then
+        bits = bits + storage_size(points%affine, lp)*size(points%affine, kind=lp)
+      end if
+      if (allocated(nodes%gain)) then
+        bits = bits + storage_size(nodes%gain, lp)*size(nodes%gain, kind=lp)
+      end if
+      if (allocated(nodes%remapped)) then
+        bits = bits + storage_size(nodes%remapped, lp)*size(nodes%remapped, kind=lp)
+      end if
       if (allocated(points%reference_volume)) then
         bits = bits + storage_size(points%mass, lp)*size(points%mass, kind=lp)
       end if

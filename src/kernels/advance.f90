@@ -5,7 +5,10 @@ module mpm_advance
   use mpm_stencil, only: axis_fraction, block_size, stencil_t
   implicit none
   private
-  public :: advance_points, exponential, trace_of_gradient, turn_stress
+  public :: advance_points, exponential, largest_growth, trace_of_gradient, turn_stress
+
+  !> Largest growth of v_theta in a step: more would need a path that the axis bends away.
+  real(wp), parameter :: largest_growth = 2.0_wp
 
 contains
 
@@ -143,8 +146,6 @@ contains
     real(wp), intent(in) :: grid_velocity(3, n)
     !> Velocities r, z, theta. [m/s] (3, n)
     real(wp), intent(inout) :: velocity(3, n)
-    !> Largest growth of v_theta in a step: more would need a path that the axis bends away.
-    real(wp), parameter :: largest_growth = 2.0_wp
     real(wp) :: angle, r, r_new, v_t
     integer :: p
 

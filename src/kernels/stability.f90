@@ -11,7 +11,7 @@ module mpm_stability
   use mpm_stencil, only: basis_box, basis_cubic, stencil_t
   implicit none
   private
-  public :: courant_limit
+  public :: courant_limit, filtered_limit
 
   !> Limits of quadratic B-splines for 1, 2, 3, 4 and more points in a cell, rounded down.
   real(wp), parameter :: quadratic_limit(5) = [0.707_wp, 1.032_wp, 1.145_wp, 1.189_wp, 1.209_wp]
@@ -59,5 +59,38 @@ contains
       end if
     end associate
   end function courant_limit
+
+  !> Largest c dt sqrt(sum 1/h**2) when the gradient is formed from velocities that went through the
+  !! points (MUSL, USF).
+  !!
+  !! FLIP needs mu c**2 K dt**2 <= 4. Hats have mu = 1 - g s, where g = 4 mean(xi (1 - xi)) is
+  !! least, g = 2/3 (1 - 1/n**2), for points on node lines: C**2 = 4 g, or 1/(1 - g) for g < 1/2.
+  !! Other transfers need mu c**2 K dt**2 <= 2 (1 + nu), mu <= nu <= 1, or with affine fields
+  !! nu c**2 K dt**2 <= 2 (1 + nu), for which C = 1, c**2 K dt**2 <= 4, suffices. In several
+  !! dimensions mu is the product over the directions, and the sum over them of K_d mu_d, each with
+  !! mu_e**2 of the others, is at most the sum of K_d mu_d.
+  !!
+  !! This serves all bases: B-splines, uGIMP and averages over corners are means of hats over
+  !! places, and their derivatives are means of those of hats; the square of a mean is at most the
+  !! mean of the squares, so that no symbol is above mu = 1 - g s and K = 4 s/h**2. A slope of an
+  !! affine fit is a mean of the differences between neighbouring nodes, with the same bound of K.
+  pure function filtered_limit(per_cell, flip) result(limit)
+    !> Points along the smallest spacing, at least 1.
+    real(wp), intent(in) :: per_cell
+    !> Velocities went through the points by FLIP.
+    logical, intent(in) :: flip
+    !> The limit.
+    real(wp) :: limit
+    real(wp) :: g
+
+    limit = 1.0_wp
+    if (.not. flip) return
+    g = 2.0_wp/3.0_wp*(1.0_wp - 1.0_wp/per_cell**2)
+    if (g > 0.5_wp) then
+      limit = 2.0_wp*sqrt(g)
+    else
+      limit = 1.0_wp/sqrt(1.0_wp - g)
+    end if
+  end function filtered_limit
 
 end module mpm_stability

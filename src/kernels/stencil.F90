@@ -31,7 +31,7 @@ module mpm_stencil
   private
   public :: stencil_t
   public :: axis_fraction, block_size, decode_keys, outside, stencil_keys, stencil_weights
-  public :: basis_box, basis_cubic, basis_hat, natural_width
+  public :: basis_box, basis_cubic, basis_hat, natural_width, period_shift
 
   !> Points treated together by the kernels; their scratch fits the first-level cache.
   integer, parameter :: block_size = 128
@@ -66,6 +66,8 @@ module mpm_stencil
     real(wp) :: lambda(3) = 0.5_wp
     !> Directions in which the grid repeats.
     logical :: periodic(3) = .false.
+    !> Slopes of the best affine fit in place of the functions' derivatives.
+    logical :: fitted = .false.
     !> Lower corner of the grid. [m]
     real(wp) :: lower(3) = 0.0_wp
     !> Spacing of the nodes. [m]
@@ -267,8 +269,31 @@ contains
 
     if (stencil%averaged .and. stencil%general()) then
       call averaged_weights(stencil, n, x, extent, base, w, dw)
-      return
+    else
+      call plain_weights(stencil, n, x, extent, base, w, dw)
     end if
+    if (stencil%fitted .and. stencil%width > 2) then
+      call fitted_slopes(stencil, stencil%width, stencil%dim, n, x, base, w, dw)
+    end if
+  end subroutine stencil_weights
+
+  !> Values and derivatives of all but the averages of smooth or periodic functions.
+  pure subroutine plain_weights(stencil, n, x, extent, base, w, dw)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(*)
+    !> Half sides of the points' boxes. [m] (n)
+    real(wp), intent(in) :: extent(n)
+    !> First nodes. (3, n)
+    integer, intent(in) :: base(3, n)
+    !> Values. (width, dim, n)
+    real(wp), intent(inout) :: w(*)
+    !> Derivatives. [1/m] (width, dim, n)
+    real(wp), intent(inout) :: dw(*)
+
     select case (10*stencil%dim + stencil%width)
     case (12)
       call weights_1d_2(stencil, n, x, base, w, dw)
@@ -289,7 +314,69 @@ contains
     case (34)
       call weights_3d_4(stencil, n, x, extent, base, w, dw)
     end select
-  end subroutine stencil_weights
+  end subroutine plain_weights
+
+  !> The period that lies between the stored position of a point and the nodes of its stencil.
+  !!
+  !! A stencil that begins below the lower face of a periodic direction is kept at its image at the
+  !! upper end, a period away from the point.
+  elemental function period_shift(stencil, d, x, first) result(shift)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Direction.
+    integer, intent(in) :: d
+    !> Position in this direction. [m]
+    real(wp), intent(in) :: x
+    !> First node of the stencil.
+    integer, intent(in) :: first
+    !> What brings the point to its stencil when added to x. [m]
+    real(wp) :: shift
+
+    shift = 0.0_wp
+    if (.not. stencil%periodic(d)) return
+    ! Otherwise the point lies above the first node, but for roundings.
+    if ((x - stencil%lower(d))/stencil%h(d) < real(first, wp) - 0.25_wp) then
+      shift = real(stencil%n_cells(d), wp)*stencil%h(d)
+    end if
+  end function period_shift
+
+  !> Replace derivatives by the weights of the best affine fit, w r/sum(w r**2) in each direction.
+  !!
+  !! r is the distance of a node from the weighted mean of the nodes, which is the point itself for
+  !! functions that reproduce positions. Of hats the fit is the derivative, which stays where the
+  !! point is so close to a node that the quotient is of roundings.
+  pure subroutine fitted_slopes(stencil, width, dim, n, x, base, w, dw)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Nodes per direction.
+    integer, intent(in) :: width
+    !> Dimensions.
+    integer, intent(in) :: dim
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(dim, n)
+    !> First nodes. (3, n)
+    integer, intent(in) :: base(3, n)
+    !> Values. (width, dim, n)
+    real(wp), intent(in) :: w(width, dim, n)
+    !> Derivatives, then slopes of the fit. [1/m] (width, dim, n)
+    real(wp), intent(inout) :: dw(width, dim, n)
+    real(wp), parameter :: least = 1.0e-3_wp
+    real(wp) :: r(width), s, spread
+    integer :: p, d, j
+
+    do p = 1, n
+      do d = 1, dim
+        s = x(d, p) + period_shift(stencil, d, x(d, p), base(d, p))
+        s = (s - stencil%lower(d))/stencil%h(d)
+        r = [(real(base(d, p) + j - 1, wp), j=1, width)] - s
+        r = r - sum(w(:, d, p)*r)
+        spread = sum(w(:, d, p)*r**2)
+        if (spread > least) dw(:, d, p) = w(:, d, p)*r/(spread*stencil%h(d))
+      end do
+    end do
+  end subroutine fitted_slopes
 
   !> Keep a local coordinate of a cell a few roundings away from both its nodes.
   elemental function off_node(xi) result(inside)

@@ -32,6 +32,12 @@ module mpm_nodes
     !> Velocity increment of the step, dt f/m; until the grid update, accelerations of nodes of
     !! negligible mass that `force` leaves out. [m/s] (nvel, nn)
     real(wp), allocatable :: increment(:, :)
+    !> What the velocities of the points receive; not allocated where that is `increment`. [m/s]
+    !! (nvel, nn)
+    real(wp), allocatable :: gain(:, :)
+    !> Velocity of a second mapping in a step, from which strain rates are formed; not allocated
+    !! unless there is one. [m/s] (nvel, nn)
+    real(wp), allocatable :: remapped(:, :)
   contains
     !> Set up the nodes of a body.
     procedure(init_i), deferred :: init

@@ -61,6 +61,9 @@ module mpm_points
     !> Acceleration by a body force that differs from point to point; not allocated when there is
     !> none. [m/s2] (nvel, n)
     real(wp), allocatable :: load(:, :)
+    !> Gradient of the point's own field of velocities, components as the first of the velocity
+    !! gradient; not allocated unless the solver maps such fields. [1/s] (nvel dim, n)
+    real(wp), allocatable :: affine(:, :)
     !> Volume at the start, for solvers that ask for it. [m3] (n)
     real(wp), allocatable :: reference_volume(:)
     !> Volume that the material sees, where it is not `volume`. [m3] (n)
@@ -251,6 +254,7 @@ contains
     call permute_vectors(order, self%stress)
     if (allocated(self%gradient)) call permute_vectors(order, self%gradient)
     if (allocated(self%load)) call permute_vectors(order, self%load)
+    if (allocated(self%affine)) call permute_vectors(order, self%affine)
     if (allocated(self%reference_volume)) call permute_scalars(order, self%reference_volume)
     if (allocated(self%smoothed_volume)) call permute_scalars(order, self%smoothed_volume)
   end subroutine points_permute

@@ -8,14 +8,17 @@ module mpm_explicit_steps
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
   use mpm_material, only: material_t
   use mpm_model, only: model_t
+  use mpm_momentum, only: add_momentum
   use mpm_nodes, only: nodes_t
+  use mpm_point_blocks, only: sweep_block
   use mpm_points, only: points_t
   use mpm_scatter, only: scatter
   use mpm_seam, only: copy_to_ghosts, widen_at_seam, wrap_points
   use mpm_sort, only: base_bounds
   use mpm_stencil, only: block_size, stencil_keys, stencil_t
   use mpm_strings, only: to_text
-  use mpm_stability, only: courant_limit
+  use mpm_stability, only: courant_limit, filtered_limit
+  use mpm_sweep, only: sweep_t
   use mpm_threads, only: useful_threads
   use mpm_window, only: window_t
   implicit none
@@ -30,7 +33,7 @@ module mpm_explicit_steps
 contains
 
   !> Choose the basis of a body and sort its points by cell.
-  subroutine locate_points(model, body, averaged, error)
+  subroutine locate_points(model, body, averaged, error, fitted)
     !> The model.
     type(model_t), intent(inout) :: model
     !> Position of the body in the model's list.
@@ -39,6 +42,8 @@ contains
     logical, intent(in) :: averaged
     !> Points that the basis can't take.
     type(error_t), allocatable, intent(out) :: error
+    !> Slopes of the best affine fit in place of the functions' derivatives; not when left out.
+    logical, intent(in), optional :: fitted
     type(stencil_t) :: stencil
 
     associate (item => model%bodies(body)%body)
@@ -49,6 +54,7 @@ contains
         error%line = item%points%widest_line
         return
       end if
+      if (present(fitted)) stencil%fitted = fitted
       call item%points%locate(stencil)
     end associate
   end subroutine locate_points
@@ -91,6 +97,12 @@ contains
                    points%extent(:n), points%mass(:n), points%volume(:n), &
                    points%velocity(:, :n), points%stress(:, :n), nodes%mass, &
                    nodes%momentum, nodes%force)
+      if (allocated(points%affine)) then
+        call add_momentum(points%kin, points%stencil, window, useful_threads(threads, n), n, &
+                          points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
+                          points%extent(:n), points%mass(:n), nodes%momentum, &
+                          affine=points%affine(:, :n))
+      end if
       call finish_mapping(points%kin%nvel, window%size(), threads, points%mass_cutoff, &
                           points%body_force, nodes%mass, nodes%momentum, nodes%force, &
                           nodes%velocity, nodes%increment)
@@ -229,7 +241,7 @@ contains
   end subroutine advance_nodes
 
   !> Advance the points of a body with the grid, then their stress.
-  subroutine update_points(model, body, dt, keep_gradient, error, keep_stress)
+  subroutine update_points(model, body, dt, keep_gradient, error, keep_stress, sweep)
     !> The model.
     type(model_t), intent(inout) :: model
     !> Position of the body in the model's list.
@@ -242,28 +254,25 @@ contains
     type(error_t), allocatable, intent(out) :: error
     !> Leave the stress as it is; false when left out.
     logical, intent(in), optional :: keep_stress
+    !> What to do; when left out all of it, by FLIP with the stress updated last.
+    type(sweep_t), intent(in), optional :: sweep
     integer, allocatable :: slot(:), cause(:)
     integer :: blocks, first_bad, i
     logical :: with_stress
 
     associate (item => model%bodies(body)%body)
       if (item%points%n_inside == 0) return
-      if (any(item%points%stencil%periodic)) then
-        associate (stencil => item%points%stencil, nodes => item%nodes)
-          call copy_to_ghosts(stencil, nodes%window, nodes%kin%nvel, nodes%velocity)
-          call copy_to_ghosts(stencil, nodes%window, nodes%kin%nvel, nodes%increment)
-        end associate
-      end if
+      if (any(item%points%stencil%periodic)) call fill_ghosts(item, sweep)
       blocks = (item%points%n_inside + block_size - 1)/block_size
       allocate (slot(blocks), cause(blocks))
       with_stress = allocated(item%material)
       if (present(keep_stress)) with_stress = with_stress .and. .not. keep_stress
       if (with_stress) then
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
-                          keep_gradient, slot, cause, item%material)
+                          keep_gradient, slot, cause, item%material, sweep)
       else
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
-                          keep_gradient, slot, cause)
+                          keep_gradient, slot, cause, sweep=sweep)
       end if
       first_bad = 0
       do i = 1, blocks
@@ -277,8 +286,29 @@ contains
     end associate
   end subroutine update_points
 
+  !> Give the ghosts at the seams of a periodic grid the values of their nodes.
+  subroutine fill_ghosts(body, sweep)
+    !> The body, before a visit to its points.
+    class(body_t), intent(inout) :: body
+    !> What the visit does.
+    type(sweep_t), intent(in), optional :: sweep
+
+    associate (stencil => body%points%stencil, nodes => body%nodes)
+      call copy_to_ghosts(stencil, nodes%window, nodes%kin%nvel, nodes%velocity)
+      call copy_to_ghosts(stencil, nodes%window, nodes%kin%nvel, nodes%increment)
+      if (.not. present(sweep)) return
+      ! Fields that the visit does not read may be of an earlier window.
+      if (sweep%remapped) then
+        call copy_to_ghosts(stencil, nodes%window, nodes%kin%nvel, nodes%remapped)
+      else if (sweep%kick .and. allocated(nodes%gain)) then
+        call copy_to_ghosts(stencil, nodes%window, nodes%kin%nvel, nodes%gain)
+      end if
+    end associate
+  end subroutine fill_ghosts
+
   !> Visit the points of a body in blocks on all threads.
-  subroutine sweep_blocks(points, nodes, stencil, threads, dt, keep_gradient, slot, cause, material)
+  subroutine sweep_blocks(points, nodes, stencil, threads, dt, keep_gradient, slot, cause, &
+                          material, sweep)
     !> The points.
     class(points_t), intent(inout) :: points
     !> Their nodes, after the grid update.
@@ -297,6 +327,8 @@ contains
     integer, intent(out) :: cause(:)
     !> Constitutive law.
     class(material_t), intent(in), optional :: material
+    !> What to do.
+    type(sweep_t), intent(in), optional :: sweep
     integer :: block, lo(3), hi(3), block_lo(3), block_hi(3), n_changed, changed
 
     lo = huge(1)
@@ -304,17 +336,20 @@ contains
     n_changed = 0
     !$omp parallel do default(none) schedule(static) &
     !$omp num_threads(useful_threads(threads, points%n_inside)) &
-    !$omp shared(points, nodes, stencil, dt, keep_gradient, slot, cause, material) &
+    !$omp shared(points, nodes, stencil, dt, keep_gradient, slot, cause, material, sweep) &
     !$omp private(block, block_lo, block_hi, changed) &
     !$omp reduction(min:lo) reduction(max:hi) reduction(+:n_changed)
     do block = 1, size(slot)
       call update_block(points, nodes, stencil, dt, keep_gradient, block, slot(block), &
-                        cause(block), block_lo, block_hi, changed, material)
+                        cause(block), block_lo, block_hi, changed, material, sweep)
       lo = min(lo, block_lo)
       hi = max(hi, block_hi)
       n_changed = n_changed + changed
     end do
     !$omp end parallel do
+    if (present(sweep)) then
+      if (.not. sweep%drift) return
+    end if
     points%lo = lo
     points%hi = hi
     points%n_changed = points%n_changed + n_changed
@@ -323,7 +358,7 @@ contains
 
   !> Interpolate to one block of points, move them, update their stress and their keys.
   subroutine update_block(points, nodes, stencil, dt, keep_gradient, block, slot, cause, lo, hi, &
-                          changed, material)
+                          changed, material, sweep)
     !> The points; the blocks of different threads do not overlap.
     class(points_t), intent(inout) :: points
     !> Their nodes, after the grid update.
@@ -348,19 +383,32 @@ contains
     integer, intent(out) :: changed
     !> Constitutive law.
     class(material_t), intent(in), optional :: material
+    !> What to do.
+    type(sweep_t), intent(in), optional :: sweep
     real(wp) :: velocity(3*block_size), increment(3*block_size), gradient(9*block_size)
     integer :: key(block_size), a, b, n
+    logical :: strain, drift
 
+    strain = .true.
+    drift = .true.
+    if (present(sweep)) then
+      strain = sweep%strain
+      drift = sweep%drift
+    end if
     a = (block - 1)*block_size + 1
     b = min(block*block_size, points%n_inside)
     n = b - a + 1
     associate (kin => points%kin)
-      call g2p(kin, stencil, nodes%window, n, points%key(a:b), points%x(:, a:b), &
-               points%extent(a:b), nodes%velocity, nodes%increment, velocity, increment, gradient)
-      call advance_points(kin, stencil, n, dt, velocity, increment, gradient, points%x(:, a:b), &
-                          points%displacement(:, a:b), points%velocity(:, a:b), &
-                          points%volume(a:b), slot)
-      if (keep_gradient) then
+      if (present(sweep)) then
+        call sweep_block(points, nodes, stencil, sweep, dt, a, b, gradient, slot)
+      else
+        call g2p(kin, stencil, nodes%window, n, points%key(a:b), points%x(:, a:b), &
+                 points%extent(a:b), nodes%velocity, nodes%increment, velocity, increment, gradient)
+        call advance_points(kin, stencil, n, dt, velocity, increment, gradient, points%x(:, a:b), &
+                            points%displacement(:, a:b), points%velocity(:, a:b), &
+                            points%volume(a:b), slot)
+      end if
+      if (keep_gradient .and. strain) then
         points%gradient(:, a:b) = reshape(gradient(:kin%ngrad*n), [kin%ngrad, n])
       end if
     end associate
@@ -370,16 +418,23 @@ contains
     changed = 0
     if (slot == 0) then
       cause = went_well
-      if (present(material)) then
-        call advance_stress(points%kin, material, n, dt, gradient, points%mass(a:b), &
-                            points%volume(a:b), points%stress(:, a:b), slot)
+      if (present(material) .and. strain) then
+        if (drift) then
+          call advance_stress(points%kin, material, n, dt, gradient, points%mass(a:b), &
+                              points%volume(a:b), points%stress(:, a:b), slot)
+        else
+          call material%update_stress(n, dt, gradient, points%mass(a:b), points%volume(a:b), &
+                                      points%stress(:, a:b), slot)
+        end if
         if (slot > 0) cause = bad_stress
       end if
-      if (any(stencil%periodic)) call wrap_points(stencil, n, points%x(:, a:b))
-      call stencil_keys(stencil, n, points%x(:, a:b), points%extent(a:b), key)
-      changed = count(key(:n) /= points%key(a:b))
-      points%key(a:b) = key(:n)
-      call base_bounds(stencil, n, key, lo, hi)
+      if (drift) then
+        if (any(stencil%periodic)) call wrap_points(stencil, n, points%x(:, a:b))
+        call stencil_keys(stencil, n, points%x(:, a:b), points%extent(a:b), key)
+        changed = count(key(:n) /= points%key(a:b))
+        points%key(a:b) = key(:n)
+        call base_bounds(stencil, n, key, lo, hi)
+      end if
     end if
     if (slot > 0) slot = slot + a - 1
   end subroutine update_block
@@ -477,8 +532,9 @@ contains
   !> Largest stable time step of a body with FLIP and stress update last.
   !!
   !! A mode is stable for c**2 K dt**2 <= 4/(2 - mu), which bounds c dt over the smallest spacing;
-  !! see `mpm_stability`.
-  pure subroutine body_stable_step(spacing, body, wave_speed, limit)
+  !! other limits hold when the gradient is formed from velocities that went through the points
+  !! (MUSL, USF). See `mpm_stability`.
+  pure subroutine body_stable_step(spacing, body, wave_speed, limit, filtered, flip)
     !> Spacing of the grid. [m]
     real(wp), intent(in) :: spacing(3)
     !> The body.
@@ -487,6 +543,10 @@ contains
     real(wp), intent(out) :: wave_speed
     !> Largest stable step; huge when nothing bounds it. [s]
     real(wp), intent(out) :: limit
+    !> Gradients are formed from velocities that went through the points; not when left out.
+    logical, intent(in), optional :: filtered
+    !> They did so by FLIP; so they do when left out.
+    logical, intent(in), optional :: flip
     integer :: n
 
     wave_speed = 0.0_wp
@@ -495,18 +555,23 @@ contains
     if (n == 0 .or. .not. allocated(body%material)) return
     wave_speed = body%material%wave_speed(n, body%points%mass(:n), body%points%volume(:n), &
                                           body%points%stress(:, :n))
-    if (wave_speed > 0.0_wp) limit = stable_length(spacing, body)/wave_speed
+    if (wave_speed > 0.0_wp) limit = stable_length(spacing, body, filtered, flip)/wave_speed
   end subroutine body_stable_step
 
   !> Largest stable c dt of a body, from the spacing of the grid and the points in a cell.
-  pure function stable_length(spacing, body) result(length)
+  pure function stable_length(spacing, body, filtered, flip) result(length)
     !> Spacing of the grid. [m]
     real(wp), intent(in) :: spacing(3)
     !> The body.
     class(body_t), intent(in) :: body
+    !> Gradients are formed from velocities that went through the points; not when left out.
+    logical, intent(in), optional :: filtered
+    !> They did so by FLIP; so they do when left out.
+    logical, intent(in), optional :: flip
     !> Wave speed times stable step. [m]
     real(wp) :: length
     real(wp) :: per_cell
+    logical :: through_points, by_flip
     integer :: n, dim
 
     n = body%points%n_inside
@@ -515,7 +580,15 @@ contains
     per_cell = minval(spacing(:dim))/(sum((2.0_wp*body%points%extent(:n))**dim)/real(n, wp)) &
                **(1.0_wp/real(dim, wp))
     per_cell = max(1.0_wp, per_cell)
-    length = courant_limit(body%points%stencil, per_cell)*minval(spacing(:dim))
+    through_points = .false.
+    if (present(filtered)) through_points = filtered
+    by_flip = .true.
+    if (present(flip)) by_flip = flip
+    if (through_points) then
+      length = filtered_limit(per_cell, by_flip)/sqrt(sum(1.0_wp/spacing(:dim)**2))
+    else
+      length = courant_limit(body%points%stencil, per_cell)*minval(spacing(:dim))
+    end if
   end function stable_length
 
 end module mpm_explicit_steps

@@ -9,6 +9,7 @@ import pytest
 from frames import Array, Frame, read_series
 from scene import DIM, EPSILON, ROUNDING, UP, Body, Run, Scene, block, huang, run_scene
 from test_collision import hashes
+from test_solvers import TRANSFERS, section
 
 CELL = 1 / 16
 CLASSES = (
@@ -130,11 +131,40 @@ def last_frames(folder: Path, kind: str = "fpd") -> list[Frame]:
 @pytest.mark.parametrize("sim_type", [2, 3])
 def test_seam_is_nowhere(mpm3d: Run, tmp_path: Path, name: str, sim_type: int, cpdi: int) -> None:
     """A collision on the seam is the same as one half a period away."""
+    compare_places(mpm3d, tmp_path, name, sim_type, cpdi)
+
+
+@pytest.mark.parametrize("name", [name for name in PERIODIC if "UGIMP" not in name])
+@pytest.mark.parametrize("solver", ["ExplicitUSL", "ExplicitMUSL", "ExplicitUSF"])
+@pytest.mark.parametrize("transfer", [name for name in TRANSFERS if name != "FLIP"])
+def test_seam_is_nowhere_with_any_transfer(
+    mpm3d: Run, tmp_path: Path, transfer: str, solver: str, name: str
+) -> None:
+    """Second mappings, affine fields, fitted slopes and filters pass the seam, too."""
+    for cpdi in (0, 1):
+        lines = f"int-properties = {{cpdi = {cpdi}}}\n    {TRANSFERS[transfer]}"
+        compare_places(mpm3d, tmp_path / str(cpdi), name, 2, cpdi, section(solver, lines))
+
+
+@pytest.mark.parametrize("name", PERIODIC)
+@pytest.mark.parametrize("solver", ["ExplicitMUSL", "ExplicitUSF"])
+def test_seam_is_nowhere_with_mapped_velocities(
+    mpm3d: Run, tmp_path: Path, solver: str, name: str
+) -> None:
+    """The solvers with FLIP, in three dimensions."""
+    compare_places(mpm3d, tmp_path, name, 3, 1, section(solver))
+
+
+def compare_places(
+    mpm3d: Run, folder: Path, name: str, sim_type: int, cpdi: int, solver: str | None = None
+) -> None:
+    """Compare a collision on the seam with one half a period away."""
     found = []
     for shift in (0.5, 0.0, 1.0):
-        folder = tmp_path / str(shift)
-        run_scene(mpm3d, collision(name, sim_type, cpdi, shift), folder)
-        found.append(last_frames(folder))
+        scene = collision(name, sim_type, cpdi, shift)
+        scene.solver = solver
+        run_scene(mpm3d, scene, folder / str(shift))
+        found.append(last_frames(folder / str(shift)))
     mass = [frame.fields["mass"] for frame in found[0]]
     momentum = [m @ frame.fields["velocity"] for m, frame in zip(mass, found[0], strict=True)]
     scale = float(mass[0].sum()) * 1.5
@@ -216,13 +246,16 @@ def test_same_bytes_for_any_number_of_threads(
     for body in scene.bodies:
         x = body.rows[:, 2]
         body.rows[:, 2 + sim_type] += 0.3 * np.sin(25 * x) * body.rows[:, 3]
-    found = []
-    for threads in (1, 2, 3):
-        folder = tmp_path / str(threads)
-        run_scene(mpm3d, scene, folder, "--threads", str(threads))
-        found.append(hashes(folder / "frames"))
-    assert len(found[0]) == 8
-    assert found[0] == found[1] == found[2]
+    mapped = section("ExplicitMUSL", f"{TRANSFERS['MLS']}\n    int-properties = {{cpdi = {cpdi}}}")
+    for solver in (None, mapped):
+        scene.solver = solver
+        found = []
+        for threads in (1, 2, 3):
+            folder = tmp_path / f"{threads}-{solver is None}"
+            run_scene(mpm3d, scene, folder, "--threads", str(threads))
+            found.append(hashes(folder / "frames"))
+        assert len(found[0]) == 8
+        assert found[0] == found[1] == found[2]
 
 
 def test_a_body_goes_round(mpm3d: Run, tmp_path: Path) -> None:

@@ -84,7 +84,7 @@ def test_list(mpm3d: Run, tmp_path: Path) -> None:
     expected = {
         "serializer": {"DefaultVTK", "MinimalVTK"},
         "driver": {"DefaultDriver", "UserDefinedGravityDriver", "BallisticDriver"},
-        "solver": {"ExplicitUSL"},
+        "solver": {"ExplicitUSL", "ExplicitMUSL", "ExplicitUSF"},
         "grid": {"CartesianLinear"},
         "body": {"DefaultBody"},
         "points": {"DefaultPoints", "CartesianPoints"},
@@ -139,7 +139,7 @@ def test_describe_every_class(mpm3d: Run, tmp_path: Path) -> None:
         ("ContactHuang", ["mu", "body_1", "body_2", "id_1", "id_2"]),
         ("IsotropicLinearElasticity", ["E [Pa]", "nu"]),
         ("CartesianLinear", ["Lx [m]", "Ly [m]", "Lz [m]", "Nx", "Ny", "Nz"]),
-        ("ExplicitUSL", ["cpdi", "contact"]),
+        ("ExplicitUSL", ["cpdi", "contact", "staggered", "transfer", "flip", "xpic_order"]),
         ("DefaultVTK", ["rate [1/s]", "digits", "frame_folder", "save_folder", "run_name"]),
         ("UserDefinedGravityDriver", ["t_stop [s]", "gx [m/s2]", "gy [m/s2]", "gz [m/s2]"]),
         ("BallisticDriver", ["t_stop [s]", "vx [m/s]", "vy [m/s]", "vz [m/s]", "projectile"]),
