@@ -61,9 +61,9 @@ contains
                                    &with bounded traction', lower=wall_free, upper=wall_bounded, &
                                    types=types_with_dim(axis_of(face)))
     end do
-    call description%add_integer('unilateral', '1: walls of code 2 only push, and take the momentum &
-                                 &that they stop from the points; 0: as mpm_3d', default=0, &
-                                 lower=0, upper=1, by_name=.true.)
+    call description%add_integer('unilateral', '1: walls of code 2 only push, and take the &
+                                 &momentum that they stop from the points; 0: as mpm_3d', &
+                                 default=0, lower=0, upper=1, by_name=.true.)
     call description%add_real('values', 'by code', 'what the codes take, face by face: 2: mu [-]; &
                               &4: velocity V [m/s], 3 entries; 5: traction t [Pa], 3 entries; &
                               &6: V [m/s] and the largest traction tau_max [Pa], 4 entries', &

@@ -72,10 +72,10 @@ contains
                               &the unit normals are averaged. mpm_3d takes that of the first body &
                               &(normals = 0). Nodes where the normal has no direction are skipped.')
     call description%add_note('normals = 1: at nodes on faces of the grid normals lie in the face, &
-                              &as if bodies went on beyond it. With normals = 0 they tilt there, and &
-                              &bodies between side walls leak past each other.')
-    call description%add_note('normals = 1 tilts at corners of a body on a flat one, which hold it: &
-                              &there use normals = 0 and name the flat body first.')
+                              &as if bodies went on beyond it. With normals = 0 they tilt there, &
+                              &and bodies between side walls leak past each other.')
+    call description%add_note('normals = 1 tilts at corners of a body on a flat one, which hold &
+                              &it: there use normals = 0 and name the flat body first.')
     call description%add_note('Contact begins when both bodies reach the same node, up to one cell &
                               &before their points meet.')
     call description%add_note('The fields are 0 at nodes that only one body reaches.')

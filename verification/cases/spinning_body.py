@@ -272,8 +272,8 @@ with a pressure, and a free body yields to it: its moment of inertia grows by th
 points carry do not change. (`tip` = 0.02, the speed of the rim over that of waves, makes elastic
 expansion small against this.) With `rate` = `hughes_winget` the strain of a chord is 0 and the size
 stays; the volumes that the points carry, $V \exp(\Delta t \operatorname{tr} L)$ in every method,
-then shrink with $\Delta t$ (reported, not bounded). The stress must carry the centrifugal load: by the virial theorem the mean of $\int
-(T_{xx} + T_{yy})\,dV$ is twice the kinetic energy.
+then shrink with $\Delta t$ (reported, not bounded). The stress must carry the centrifugal load: by
+the virial theorem the mean of $\int (T_{xx} + T_{yy})\,dV$ is twice the kinetic energy.
 
 *TYPE 4* has no edge that turns: the points' velocities adapt once, by order $(h/R)^2$, to the
 centroids of the axisymmetric masses; from then on the angular momentum must not change, for there
