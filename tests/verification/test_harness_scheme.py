@@ -13,7 +13,22 @@ def test_default_is_usl_with_flip() -> None:
     assert scheme.label == ""
     section = scheme.solver_section(averaged=True, implicit=False)
     assert section.split() == (
-        'solver { class = "ExplicitUSL" int-properties = {cpdi = 1, contact = 0} }'.split()
+        [
+            "solver",
+            "{",
+            "class",
+            "=",
+            '"ExplicitUSL"',
+            "int-properties",
+            "=",
+            "{cpdi",
+            "=",
+            "1,",
+            "contact",
+            "=",
+            "0}",
+            "}",
+        ]
     )
 
 
