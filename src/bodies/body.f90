@@ -4,6 +4,7 @@ module mpm_body
   use mpm_configurable, only: configurable_t
   use mpm_errors, only: error_t
   use mpm_grid, only: grid_t
+  use mpm_kinds, only: wp
   use mpm_material, only: material_t
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
@@ -31,6 +32,8 @@ module mpm_body
   contains
     !> Set the body's initial state, when its parts are set up.
     procedure(init_i), deferred :: init
+    !> Change the points' velocities in a step, when they have been mapped.
+    procedure :: act_on_points => body_act_on_points
   end type body_t
 
   !> A body in a list of bodies.
@@ -54,5 +57,18 @@ module mpm_body
       type(error_t), allocatable, intent(out) :: error
     end subroutine init_i
   end interface
+
+contains
+
+  !> Most bodies are moved by their nodes alone.
+  subroutine body_act_on_points(self, time)
+    !> The body.
+    class(body_t), intent(inout) :: self
+    !> Time at the start of the step. [s]
+    real(wp), intent(in) :: time
+
+    associate (unused => self, unused_time => time)
+    end associate
+  end subroutine body_act_on_points
 
 end module mpm_body

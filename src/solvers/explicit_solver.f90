@@ -169,6 +169,7 @@ contains
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
         if (.not. body%active) cycle
+        call body%act_on_points(model%time)
         if (allocated(self%marks)) call self%marks(i)%begin(body%nodes)
         if (.not. allocated(body%boundary)) cycle
         call body%boundary%generate(model%grid, body%points, body%nodes)
