@@ -178,6 +178,11 @@ contains
     if (allocated(error)) return
     call body%material%init(grid%kin, properties, error)
     if (lacks(error, class)) return
+    associate (points => body%points)
+      deallocate (points%history)
+      allocate (points%history(body%material%n_history, points%n))
+      call body%material%start(points%n, points%mass, points%volume, points%history)
+    end associate
   end subroutine read_material
 
   !> The boundary of a body, if it has one.

@@ -51,7 +51,8 @@ contains
         energy%strain = energy%strain + &
                         body%material%strain_energy(n, body%points%mass(:n), &
                                                     body%points%volume(:n), &
-                                                    body%points%stress(:, :n))
+                                                    body%points%stress(:, :n), &
+                                                    body%points%history(:, :n))
       end associate
     end do
   end subroutine measure

@@ -102,7 +102,7 @@ contains
 
   !> Advance the stress of a block of points over one step.
   pure subroutine isotropic_linear_elasticity_update_stress(self, n, dt, gradient, mass, volume, &
-                                                            stress, first_bad)
+                                                            stress, history, first_bad)
     !> The material.
     class(isotropic_linear_elasticity_t), intent(in) :: self
     !> Number of points.
@@ -117,11 +117,13 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(inout) :: stress(self%kin%nstress, n)
+    !> Nothing is remembered. (0, n)
+    real(wp), intent(inout) :: history(self%n_history, n)
     !> First point that is turned inside out within the step; always 0 with forward Euler, for which
     !> every velocity gradient has its stress.
     integer, intent(out) :: first_bad
 
-    associate (unused => mass, unused_volume => volume)
+    associate (unused => mass, unused_volume => volume, unused_history => history)
     end associate
     first_bad = 0
     if (self%incrementally_objective) then
@@ -260,7 +262,8 @@ contains
   end subroutine update_point
 
   !> Largest sqrt((lambda + 2 G)/rho).
-  pure function isotropic_linear_elasticity_wave_speed(self, n, mass, volume, stress) result(speed)
+  pure function isotropic_linear_elasticity_wave_speed(self, n, mass, volume, stress, &
+                                                               history) result(speed)
     !> The material.
     class(isotropic_linear_elasticity_t), intent(in) :: self
     !> Number of points.
@@ -271,11 +274,13 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(in) :: stress(self%kin%nstress, n)
+    !> Nothing is remembered. (0, n)
+    real(wp), intent(in) :: history(self%n_history, n)
     !> Largest speed of a longitudinal wave. [m/s]
     real(wp) :: speed
     integer :: p
 
-    associate (unused => stress)
+    associate (unused => stress, unused_history => history)
     end associate
     speed = 0.0_wp
     do p = 1, n
@@ -285,8 +290,8 @@ contains
   end function isotropic_linear_elasticity_wave_speed
 
   !> Sum of V (s:s/(4 G) + p**2/(2 K)), s the deviator, p the pressure.
-  pure function isotropic_linear_elasticity_strain_energy(self, n, mass, volume, stress) &
-    result(energy)
+  pure function isotropic_linear_elasticity_strain_energy(self, n, mass, volume, stress, &
+                                                                  history) result(energy)
     !> The material.
     class(isotropic_linear_elasticity_t), intent(in) :: self
     !> Number of points.
@@ -297,12 +302,14 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(in) :: stress(self%kin%nstress, n)
+    !> Nothing is remembered. (0, n)
+    real(wp), intent(in) :: history(self%n_history, n)
     !> Sum over the points. [J]
     real(wp) :: energy
     real(wp) :: bulk, p, shear_part
     integer :: i
 
-    associate (unused => mass)
+    associate (unused => mass, unused_history => history)
     end associate
     bulk = self%lambda + 2.0_wp*self%shear/3.0_wp
     energy = 0.0_wp

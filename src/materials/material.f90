@@ -2,6 +2,7 @@
 module mpm_material
   use mpm_configurable, only: configurable_t
   use mpm_errors, only: error_t
+  use mpm_field_writer, only: field_writer_t
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
   use mpm_properties, only: properties_t
@@ -12,10 +13,13 @@ module mpm_material
   !> A constitutive law.
   !!
   !! `update_stress` gets whole blocks of points as arrays and never changes the object, so that
-  !! threads may share it. A trial update is a call on a copy of the stress.
+  !! threads may share it. What a law remembers of a point besides the stress is a column of
+  !! `history`, which the points keep. A trial update is a call on copies of stress and history.
   type, abstract, extends(configurable_t) :: material_t
     !> Component counts of the job.
     type(kinematics_t) :: kin
+    !> Numbers that a point remembers besides its stress; set by `init`.
+    integer :: n_history = 0
   contains
     !> Set the constants.
     procedure(init_i), deferred :: init
@@ -25,6 +29,18 @@ module mpm_material
     procedure(wave_speed_i), deferred :: wave_speed
     !> Recoverable energy of a block of points.
     procedure(strain_energy_i), deferred :: strain_energy
+    !> The memory of points that have not moved yet.
+    procedure :: start => material_start
+    !> Give points a stress that they keep at rest.
+    procedure :: assign_stress => material_assign_stress
+    !> Give points a pressure and leave the deviator.
+    procedure :: assign_pressure => material_assign_pressure
+    !> TYPE 4: express tensors of the memory in the basis of the moved points.
+    procedure :: turn_history => material_turn_history
+    !> Largest diffusivity of momentum in a block of points.
+    procedure :: diffusivity => material_diffusivity
+    !> Send the fields of the memory when a frame is written.
+    procedure :: write_fields => material_write_fields
   end type material_t
 
   abstract interface
@@ -43,7 +59,8 @@ module mpm_material
     end subroutine init_i
 
     !> Advance the stress of a block of points over one step.
-    pure subroutine update_stress_i(self, n, dt, gradient, mass, volume, stress, first_bad)
+    pure subroutine update_stress_i(self, n, dt, gradient, mass, volume, stress, history, &
+                                    first_bad)
       import :: material_t, wp
       implicit none
       !> The material.
@@ -60,12 +77,15 @@ module mpm_material
       real(wp), intent(in) :: volume(n)
       !> Cauchy stresses, of the start of the step on entry, of its end on exit. [Pa] (nstress, n)
       real(wp), intent(inout) :: stress(self%kin%nstress, n)
+      !> What the points remember, of the start of the step on entry, of its end on exit.
+      !> (n_history, n)
+      real(wp), intent(inout) :: history(self%n_history, n)
       !> First point for which there is no stress; 0 when there is none.
       integer, intent(out) :: first_bad
     end subroutine update_stress_i
 
     !> Largest wave speed in a block of points.
-    pure function wave_speed_i(self, n, mass, volume, stress) result(speed)
+    pure function wave_speed_i(self, n, mass, volume, stress, history) result(speed)
       import :: material_t, wp
       implicit none
       !> The material.
@@ -78,12 +98,14 @@ module mpm_material
       real(wp), intent(in) :: volume(n)
       !> Cauchy stresses. [Pa] (nstress, n)
       real(wp), intent(in) :: stress(self%kin%nstress, n)
+      !> What the points remember. (n_history, n)
+      real(wp), intent(in) :: history(self%n_history, n)
       !> Largest speed of a longitudinal wave. [m/s]
       real(wp) :: speed
     end function wave_speed_i
 
     !> Recoverable energy of a block of points.
-    pure function strain_energy_i(self, n, mass, volume, stress) result(energy)
+    pure function strain_energy_i(self, n, mass, volume, stress, history) result(energy)
       import :: material_t, wp
       implicit none
       !> The material.
@@ -96,9 +118,144 @@ module mpm_material
       real(wp), intent(in) :: volume(n)
       !> Cauchy stresses. [Pa] (nstress, n)
       real(wp), intent(in) :: stress(self%kin%nstress, n)
+      !> What the points remember. (n_history, n)
+      real(wp), intent(in) :: history(self%n_history, n)
       !> Sum over the points. [J]
       real(wp) :: energy
     end function strain_energy_i
   end interface
+
+contains
+
+  !> The memory of points that have not moved yet: 0.
+  pure subroutine material_start(self, n, mass, volume, history)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> What the points remember. (n_history, n)
+    real(wp), intent(out) :: history(self%n_history, n)
+
+    associate (unused => mass, unused_volume => volume)
+    end associate
+    history = 0.0_wp
+  end subroutine material_start
+
+  !> Give points a stress that they keep at rest; doing so twice is doing so once.
+  !!
+  !! A law whose stress follows from density and memory changes these; its points keep the part of
+  !! the stress that it admits. The space that the points fill stays.
+  pure subroutine material_assign_stress(self, n, target, mass, volume, stress, history, first_bad)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Stresses that are asked for. [Pa] (nstress, n)
+    real(wp), intent(in) :: target(self%kin%nstress, n)
+    !> Masses. [kg] (n)
+    real(wp), intent(inout) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(self%kin%nstress, n)
+    !> What the points remember. (n_history, n)
+    real(wp), intent(inout) :: history(self%n_history, n)
+    !> First point that can't have its stress; 0 when there is none.
+    integer, intent(out) :: first_bad
+
+    associate (unused => mass, unused_volume => volume, unused_history => history)
+    end associate
+    first_bad = 0
+    stress = target
+  end subroutine material_assign_stress
+
+  !> Give points a pressure and leave the deviator.
+  pure subroutine material_assign_pressure(self, n, pressure, mass, volume, stress, history, &
+                                           first_bad)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Pressures. [Pa] (n)
+    real(wp), intent(in) :: pressure(n)
+    !> Masses. [kg] (n)
+    real(wp), intent(inout) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(self%kin%nstress, n)
+    !> What the points remember. (n_history, n)
+    real(wp), intent(inout) :: history(self%n_history, n)
+    !> First point that can't have its pressure; 0 when there is none.
+    integer, intent(out) :: first_bad
+    real(wp) :: target(self%kin%nstress, n), change
+    integer :: p
+
+    do p = 1, n
+      change = pressure(p) + (stress(1, p) + stress(2, p) + stress(3, p))/3.0_wp
+      target(:, p) = stress(:, p)
+      target(1:3, p) = target(1:3, p) - change
+    end do
+    call self%assign_stress(n, target, mass, volume, stress, history, first_bad)
+  end subroutine material_assign_pressure
+
+  !> TYPE 4: numbers that are no tensors stay.
+  pure subroutine material_turn_history(self, n, dt, gradient, history)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients of the step. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(self%kin%ngrad, n)
+    !> What the points remember. (n_history, n)
+    real(wp), intent(inout) :: history(self%n_history, n)
+
+    associate (unused => dt, unused_gradient => gradient, unused_history => history)
+    end associate
+  end subroutine material_turn_history
+
+  !> Largest diffusivity of momentum in a block of points: 0 without viscosity.
+  pure function material_diffusivity(self, n, mass, volume) result(diffusivity)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Factor of the largest second derivative of a velocity. [m2/s]
+    real(wp) :: diffusivity
+
+    associate (unused => self, unused_mass => mass, unused_volume => volume)
+    end associate
+    diffusivity = 0.0_wp
+  end function material_diffusivity
+
+  !> Send the fields of the memory when a frame is written: none.
+  subroutine material_write_fields(self, n, mass, volume, history, writer)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> What the points remember. (n_history, n)
+    real(wp), intent(in) :: history(self%n_history, n)
+    !> Receiver of point fields.
+    class(field_writer_t), intent(inout) :: writer
+
+    associate (unused => writer, unused_mass => mass, unused_volume => volume, &
+               unused_history => history)
+    end associate
+  end subroutine material_write_fields
 
 end module mpm_material

@@ -54,6 +54,8 @@ module mpm_points
     real(wp), allocatable :: velocity(:, :)
     !> Cauchy stress. [Pa] (nstress, n)
     real(wp), allocatable :: stress(:, :)
+    !> What the material remembers of each point besides the stress. (n_history, n)
+    real(wp), allocatable :: history(:, :)
     !> Velocity gradient of the last step that was asked to keep it; 0 before. [1/s] (ngrad, n)
     real(wp), allocatable :: gradient(:, :)
     !> Acceleration by the body force, the same for all points. [m/s2]
@@ -161,7 +163,7 @@ contains
     self%n_inside = n
     allocate (self%id(n), self%mass(n), self%volume(n), self%extent(n), self%key(n))
     allocate (self%x(kin%dim, n), self%displacement(kin%nvel, n), self%velocity(kin%nvel, n))
-    allocate (self%stress(kin%nstress, n), self%order(n))
+    allocate (self%stress(kin%nstress, n), self%order(n), self%history(0, n))
     self%file = ''
     self%id = [(i, i=1, n)]
     self%mass = 0.0_wp
@@ -252,6 +254,7 @@ contains
     call permute_vectors(order, self%displacement)
     call permute_vectors(order, self%velocity)
     call permute_vectors(order, self%stress)
+    if (size(self%history, 1) > 0) call permute_vectors(order, self%history)
     if (allocated(self%gradient)) call permute_vectors(order, self%gradient)
     if (allocated(self%load)) call permute_vectors(order, self%load)
     if (allocated(self%affine)) call permute_vectors(order, self%affine)

@@ -49,6 +49,12 @@ contains
     associate (unused => self)
     end associate
     call body%points%write_fields(writer)
+    if (allocated(body%material)) then
+      associate (points => body%points)
+        call body%material%write_fields(points%n, points%mass, points%volume, points%history, &
+                                        writer)
+      end associate
+    end if
   end subroutine default_vtk_send_point_fields
 
   !> Send all fields of the nodes, the boundary and the contacts.

@@ -400,7 +400,7 @@ contains
     n = b - a + 1
     associate (kin => points%kin)
       if (present(sweep)) then
-        call sweep_block(points, nodes, stencil, sweep, dt, a, b, gradient, slot)
+        call sweep_block(points, nodes, stencil, sweep, dt, a, b, gradient, slot, material)
       else
         call g2p(kin, stencil, nodes%window, n, points%key(a:b), points%x(:, a:b), &
                  points%extent(a:b), nodes%velocity, nodes%increment, velocity, increment, gradient)
@@ -421,10 +421,11 @@ contains
       if (present(material) .and. strain) then
         if (drift) then
           call advance_stress(points%kin, material, n, dt, gradient, points%mass(a:b), &
-                              points%volume(a:b), points%stress(:, a:b), slot)
+                              points%volume(a:b), points%stress(:, a:b), &
+                              points%history(:, a:b), slot)
         else
           call material%update_stress(n, dt, gradient, points%mass(a:b), points%volume(a:b), &
-                                      points%stress(:, a:b), slot)
+                                      points%stress(:, a:b), points%history(:, a:b), slot)
         end if
         if (slot > 0) cause = bad_stress
       end if
@@ -440,7 +441,8 @@ contains
   end subroutine update_block
 
   !> Advance the stress of a block of points over one step.
-  subroutine advance_stress(kin, material, n, dt, gradient, mass, volume, stress, first_bad)
+  subroutine advance_stress(kin, material, n, dt, gradient, mass, volume, stress, history, &
+                            first_bad)
     !> Component counts.
     type(kinematics_t), intent(in) :: kin
     !> Constitutive law.
@@ -457,11 +459,16 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses, of the start of the step on entry, of its end on exit. [Pa] (nstress, n)
     real(wp), intent(inout) :: stress(kin%nstress, n)
+    !> What the material remembers of the points. (n_history, n)
+    real(wp), intent(inout) :: history(material%n_history, n)
     !> First point for which there is no stress; 0 when there is none.
     integer, intent(out) :: first_bad
 
-    call material%update_stress(n, dt, gradient, mass, volume, stress, first_bad)
-    if (kin%sim_type == type_axisymmetric) call turn_stress(n, dt, gradient, stress)
+    call material%update_stress(n, dt, gradient, mass, volume, stress, history, first_bad)
+    if (kin%sim_type == type_axisymmetric) then
+      call turn_stress(n, dt, gradient, stress)
+      call material%turn_history(n, dt, gradient, history)
+    end if
   end subroutine advance_stress
 
   !> The error that stops a run that went bad.
@@ -511,8 +518,7 @@ contains
     class(body_t), intent(in) :: body
     !> Largest stable step; huge when nothing bounds it. [s]
     real(wp) :: limit
-    real(wp), allocatable :: volume(:), stress(:, :)
-    real(wp) :: speed
+    real(wp), allocatable :: volume(:), stress(:, :), history(:, :)
     integer :: n
 
     limit = huge(1.0_wp)
@@ -524,8 +530,11 @@ contains
         volume = volume*abs(points%x(1, :n) - points%displacement(1, :n))
       end if
       allocate (stress(points%kin%nstress, n), source=0.0_wp)
-      speed = body%material%wave_speed(n, points%mass(:n), volume, stress)
-      if (speed > 0.0_wp) limit = stable_length(spacing, body)/speed
+      allocate (history(body%material%n_history, n))
+      call body%material%start(n, points%mass(:n), volume, history)
+      limit = stable_time(stable_length(spacing, body), &
+                          body%material%wave_speed(n, points%mass(:n), volume, stress, history), &
+                          body%material%diffusivity(n, points%mass(:n), volume))
     end associate
   end function initial_stable_step
 
@@ -554,9 +563,36 @@ contains
     n = body%points%n_inside
     if (n == 0 .or. .not. allocated(body%material)) return
     wave_speed = body%material%wave_speed(n, body%points%mass(:n), body%points%volume(:n), &
-                                          body%points%stress(:, :n))
-    if (wave_speed > 0.0_wp) limit = stable_length(spacing, body, filtered, flip)/wave_speed
+                                          body%points%stress(:, :n), body%points%history(:, :n))
+    limit = stable_time(stable_length(spacing, body, filtered, flip), wave_speed, &
+                        body%material%diffusivity(n, body%points%mass(:n), body%points%volume(:n)))
   end subroutine body_stable_step
+
+  !> Largest stable step of a material with waves and viscosity.
+  !!
+  !! Waves alone are stable for w dt <= 2 of the highest frequency w = c k, so that `length` is 2/k.
+  !! Viscous forces are of the velocities a step ago, which turns the bound into
+  !! (w dt)**2/4 + nu k**2 dt/2 <= 1, nu the diffusivity.
+  pure function stable_time(length, speed, diffusivity) result(limit)
+    !> Largest stable c dt of waves. [m]
+    real(wp), intent(in) :: length
+    !> Speed c of waves. [m/s]
+    real(wp), intent(in) :: speed
+    !> Diffusivity of momentum. [m2/s]
+    real(wp), intent(in) :: diffusivity
+    !> Largest stable step; huge when nothing bounds it. [s]
+    real(wp) :: limit
+    real(wp) :: rate, damping
+
+    limit = huge(1.0_wp)
+    if (diffusivity > 0.0_wp) then
+      rate = speed/length
+      damping = diffusivity/length**2
+      limit = 1.0_wp/(damping + sqrt(damping**2 + rate**2))
+    else if (speed > 0.0_wp) then
+      limit = length/speed
+    end if
+  end function stable_time
 
   !> Largest stable c dt of a body, from the spacing of the grid and the points in a cell.
   pure function stable_length(spacing, body, filtered, flip) result(length)

@@ -375,7 +375,7 @@ contains
     call replace_trace(points%kin, b - a + 1, dt, before(a:b), smoothed(a:b), &
                        points%gradient(:, a:b), gradient)
     call advance_stress(points%kin, material, b - a + 1, dt, gradient, points%mass(a:b), &
-                        smoothed(a:b), points%stress(:, a:b), slot)
+                        smoothed(a:b), points%stress(:, a:b), points%history(:, a:b), slot)
     if (slot > 0) slot = slot + a - 1
   end subroutine stress_of_block
 

@@ -4,6 +4,7 @@ module mpm_point_blocks
   use mpm_g2p, only: g2p
   use mpm_kinds, only: wp
   use mpm_kinematics, only: type_axisymmetric
+  use mpm_material, only: material_t
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
   use mpm_stencil, only: axis_fraction, block_size, stencil_t
@@ -16,7 +17,7 @@ module mpm_point_blocks
 contains
 
   !> Interpolate to one block of points; change velocities, positions and volumes as asked.
-  subroutine sweep_block(points, nodes, stencil, sweep, dt, a, b, gradient, slot)
+  subroutine sweep_block(points, nodes, stencil, sweep, dt, a, b, gradient, slot, material)
     !> The points; the blocks of different threads do not overlap.
     class(points_t), intent(inout) :: points
     !> Their nodes.
@@ -35,6 +36,8 @@ contains
     real(wp), intent(inout) :: gradient(9*block_size)
     !> First point of the block that is not finite, moved more than a cell or lost its volume, or 0.
     integer, intent(out) :: slot
+    !> Constitutive law, whose memory turns with the basis.
+    class(material_t), intent(in), optional :: material
     real(wp) :: velocity(3*block_size), gain(3*block_size)
     integer :: n
 
@@ -54,6 +57,9 @@ contains
         ! The stress of the start of the step turns with the basis, which moves now.
         if (sweep%drift .and. kin%sim_type == type_axisymmetric) then
           call turn_stress(n, dt, gradient, points%stress(:, a:b))
+          if (present(material)) then
+            call material%turn_history(n, dt, gradient, points%history(:, a:b))
+          end if
         end if
         gradient(:kin%ngrad*n) = 0.0_wp
       end if

@@ -1,0 +1,319 @@
+!> What rate laws of isotropic materials share: strains, rotations, pressure and shear stress.
+!!
+!! A step takes L as constant. The stress turns by half of the spin before the strain and
+!! by the other half behind it,
+!!
+!!     T* = Q T transpose(Q) + dt C:D,   T* -> law -> T,   T <- Q T transpose(Q),
+!!     Q = (I - dt W/4)**-1 (I + dt W/4),
+!!
+!! which is of second order in dt and keeps all invariants under spin, for steps of any length.
+module mpm_corotation
+  use mpm_kinds, only: wp
+  use mpm_kinematics, only: kinematics_t, type_1d, type_axisymmetric, type_out_of_plane, &
+                            type_plane_strain
+  implicit none
+  private
+  public :: add_strain, first_not_finite, invariants, rebuild, shear_rates, strain_rates, turn_half
+
+contains
+
+  !> T += dt C:D, and the traces of D.
+  pure subroutine add_strain(kin, n, dt, lambda, shear, gradient, stress)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> First Lame constant. [Pa]
+    real(wp), intent(in) :: lambda
+    !> Shear modulus. [Pa]
+    real(wp), intent(in) :: shear
+    !> Velocity gradients. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
+    !> Stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(kin%nstress, n)
+    real(wp) :: sphere, g2, d(6)
+    integer :: p
+
+    g2 = 2.0_wp*dt*shear
+    select case (kin%sim_type)
+    case (type_1d)
+      do p = 1, n
+        stress(1:3, p) = stress(1:3, p) + dt*lambda*gradient(1, p)
+        stress(1, p) = stress(1, p) + g2*gradient(1, p)
+      end do
+    case (type_plane_strain)
+      do p = 1, n
+        sphere = dt*lambda*(gradient(1, p) + gradient(4, p))
+        stress(1, p) = stress(1, p) + sphere + g2*gradient(1, p)
+        stress(2, p) = stress(2, p) + sphere + g2*gradient(4, p)
+        stress(3, p) = stress(3, p) + sphere
+        stress(4, p) = stress(4, p) + 0.5_wp*g2*(gradient(2, p) + gradient(3, p))
+      end do
+    case default
+      do p = 1, n
+        call stretching(kin%sim_type, gradient(:, p), d)
+        stress(:, p) = stress(:, p) + g2*d
+        stress(1:3, p) = stress(1:3, p) + dt*lambda*(d(1) + d(2) + d(3))
+      end do
+    end select
+  end subroutine add_strain
+
+  !> D as stored stress components times a factor, and its traces.
+  pure subroutine strain_rates(kin, n, factor, gradient, rate, trace)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Factor.
+    real(wp), intent(in) :: factor
+    !> Velocity gradients. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
+    !> factor D. (nstress, n)
+    real(wp), intent(out) :: rate(kin%nstress, n)
+    !> tr D. [1/s] (n)
+    real(wp), intent(out) :: trace(n)
+    real(wp) :: d(6)
+    integer :: p
+
+    select case (kin%sim_type)
+    case (type_1d)
+      do p = 1, n
+        rate(1, p) = factor*gradient(1, p)
+        rate(2:3, p) = 0.0_wp
+        trace(p) = gradient(1, p)
+      end do
+    case (type_plane_strain)
+      do p = 1, n
+        rate(1, p) = factor*gradient(1, p)
+        rate(2, p) = factor*gradient(4, p)
+        rate(3, p) = 0.0_wp
+        rate(4, p) = 0.5_wp*factor*(gradient(2, p) + gradient(3, p))
+        trace(p) = gradient(1, p) + gradient(4, p)
+      end do
+    case default
+      do p = 1, n
+        call stretching(kin%sim_type, gradient(:, p), d)
+        rate(:, p) = factor*d
+        trace(p) = d(1) + d(2) + d(3)
+      end do
+    end select
+  end subroutine strain_rates
+
+  !> Shear rates sqrt(2 D':D').
+  pure subroutine shear_rates(kin, n, gradient, rate)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Velocity gradients. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
+    !> Shear rates. [1/s] (n)
+    real(wp), intent(out) :: rate(n)
+    real(wp) :: d(kin%nstress, n), trace(n)
+
+    call strain_rates(kin, n, 1.0_wp, gradient, d, trace)
+    call invariants(kin%nstress, n, d, trace, rate)
+    rate = 2.0_wp*rate
+  end subroutine shear_rates
+
+  !> The six components of D in the TYPEs that have them all.
+  pure subroutine stretching(sim_type, g, d)
+    !> Simulation TYPE: 3, 4 or 5.
+    integer, intent(in) :: sim_type
+    !> Stored velocity gradient. [1/s] (ngrad)
+    real(wp), intent(in) :: g(:)
+    !> Components xx yy zz xy yz zx. [1/s]
+    real(wp), intent(out) :: d(6)
+
+    select case (sim_type)
+    case (type_out_of_plane)
+      d = [g(1), g(4), 0.0_wp, 0.5_wp*(g(2) + g(3)), 0.5_wp*g(6), 0.5_wp*g(5)]
+    case (type_axisymmetric)
+      d = [g(1), g(4), g(8), 0.5_wp*(g(2) + g(3)), 0.5_wp*g(6), 0.5_wp*(g(5) + g(7))]
+    case default
+      d = [g(1), g(5), g(9), 0.5_wp*(g(2) + g(4)), 0.5_wp*(g(6) + g(8)), 0.5_wp*(g(3) + g(7))]
+    end select
+  end subroutine stretching
+
+  !> Turn stresses by half of the rotation of a step.
+  pure subroutine turn_half(kin, n, dt, gradient, stress)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
+    !> Stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(kin%nstress, n)
+    real(wp) :: w, c, s, mean, difference, b(3), h
+    integer :: p
+
+    h = 0.125_wp*dt
+    select case (kin%sim_type)
+    case (type_1d)
+    case (type_plane_strain)
+      do p = 1, n
+        ! The rotation by 2 atan(w) turns the stress by twice as much.
+        w = h*(gradient(3, p) - gradient(2, p))
+        c = (1.0_wp - w*w)/(1.0_wp + w*w)
+        s = 2.0_wp*w/(1.0_wp + w*w)
+        mean = 0.5_wp*(stress(1, p) + stress(2, p))
+        difference = 0.5_wp*(stress(1, p) - stress(2, p))
+        w = (c*c - s*s)*difference - 2.0_wp*s*c*stress(4, p)
+        stress(4, p) = (c*c - s*s)*stress(4, p) + 2.0_wp*s*c*difference
+        stress(1, p) = mean + w
+        stress(2, p) = mean - w
+      end do
+    case (type_out_of_plane)
+      do p = 1, n
+        associate (g => gradient(:, p))
+          b = h*[g(6), -g(5), g(3) - g(2)]
+        end associate
+        call turn(b, stress(:, p))
+      end do
+    case (type_axisymmetric)
+      do p = 1, n
+        associate (g => gradient(:, p))
+          b = h*[g(6), g(7) - g(5), g(3) - g(2)]
+        end associate
+        call turn(b, stress(:, p))
+      end do
+    case default
+      do p = 1, n
+        associate (g => gradient(:, p))
+          b = h*[g(8) - g(6), g(3) - g(7), g(4) - g(2)]
+        end associate
+        call turn(b, stress(:, p))
+      end do
+    end select
+  end subroutine turn_half
+
+  !> T <- Q T transpose(Q) with Q = I + 2 (B + B**2)/(1 + b.b), b the axial vector of the skew B.
+  pure subroutine turn(b, t)
+    !> Axial vector.
+    real(wp), intent(in) :: b(3)
+    !> Stress xx yy zz xy yz zx. [Pa]
+    real(wp), intent(inout) :: t(6)
+    real(wp) :: q(3, 3), m(3, 3), f, bb
+
+    bb = b(1)**2 + b(2)**2 + b(3)**2
+    if (.not. bb > 0.0_wp) return
+    f = 2.0_wp/(1.0_wp + bb)
+    q(1, 1) = 1.0_wp - f*(b(2)**2 + b(3)**2)
+    q(2, 2) = 1.0_wp - f*(b(3)**2 + b(1)**2)
+    q(3, 3) = 1.0_wp - f*(b(1)**2 + b(2)**2)
+    q(1, 2) = f*(b(1)*b(2) - b(3))
+    q(2, 1) = f*(b(1)*b(2) + b(3))
+    q(2, 3) = f*(b(2)*b(3) - b(1))
+    q(3, 2) = f*(b(2)*b(3) + b(1))
+    q(3, 1) = f*(b(3)*b(1) - b(2))
+    q(1, 3) = f*(b(3)*b(1) + b(2))
+    ! M = Q T
+    m(:, 1) = q(:, 1)*t(1) + q(:, 2)*t(4) + q(:, 3)*t(6)
+    m(:, 2) = q(:, 1)*t(4) + q(:, 2)*t(2) + q(:, 3)*t(5)
+    m(:, 3) = q(:, 1)*t(6) + q(:, 2)*t(5) + q(:, 3)*t(3)
+    t(1) = m(1, 1)*q(1, 1) + m(1, 2)*q(1, 2) + m(1, 3)*q(1, 3)
+    t(2) = m(2, 1)*q(2, 1) + m(2, 2)*q(2, 2) + m(2, 3)*q(2, 3)
+    t(3) = m(3, 1)*q(3, 1) + m(3, 2)*q(3, 2) + m(3, 3)*q(3, 3)
+    t(4) = m(1, 1)*q(2, 1) + m(1, 2)*q(2, 2) + m(1, 3)*q(2, 3)
+    t(5) = m(2, 1)*q(3, 1) + m(2, 2)*q(3, 2) + m(2, 3)*q(3, 3)
+    t(6) = m(1, 1)*q(3, 1) + m(1, 2)*q(3, 2) + m(1, 3)*q(3, 3)
+  end subroutine turn
+
+  !> Pressures p = -tr T/3 and shear stresses tau = sqrt(s:s/2), s the deviator.
+  pure subroutine invariants(nstress, n, stress, pressure, tau)
+    !> Components of a stress.
+    integer, intent(in) :: nstress
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Stresses. [Pa] (nstress, n)
+    real(wp), intent(in) :: stress(nstress, n)
+    !> Pressures. [Pa] (n)
+    real(wp), intent(out) :: pressure(n)
+    !> Shear stresses. [Pa] (n)
+    real(wp), intent(out) :: tau(n)
+    real(wp) :: m
+    integer :: p
+
+    select case (nstress)
+    case (3)
+      do p = 1, n
+        m = -(stress(1, p) + stress(2, p) + stress(3, p))/3.0_wp
+        pressure(p) = m
+        tau(p) = sqrt(0.5_wp*((stress(1, p) + m)**2 + (stress(2, p) + m)**2 &
+                              + (stress(3, p) + m)**2))
+      end do
+    case (4)
+      do p = 1, n
+        m = -(stress(1, p) + stress(2, p) + stress(3, p))/3.0_wp
+        pressure(p) = m
+        tau(p) = sqrt(0.5_wp*((stress(1, p) + m)**2 + (stress(2, p) + m)**2 &
+                              + (stress(3, p) + m)**2) + stress(4, p)**2)
+      end do
+    case default
+      do p = 1, n
+        m = -(stress(1, p) + stress(2, p) + stress(3, p))/3.0_wp
+        pressure(p) = m
+        tau(p) = sqrt(0.5_wp*((stress(1, p) + m)**2 + (stress(2, p) + m)**2 &
+                              + (stress(3, p) + m)**2) &
+                      + stress(4, p)**2 + stress(5, p)**2 + stress(6, p)**2)
+      end do
+    end select
+  end subroutine invariants
+
+  !> Give stresses another pressure and a multiple of their deviator.
+  pure subroutine rebuild(nstress, n, before, factor, pressure, stress)
+    !> Components of a stress.
+    integer, intent(in) :: nstress
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Pressures of the stresses on entry. [Pa] (n)
+    real(wp), intent(in) :: before(n)
+    !> What multiplies the deviator. (n)
+    real(wp), intent(in) :: factor(n)
+    !> New pressures. [Pa] (n)
+    real(wp), intent(in) :: pressure(n)
+    !> Stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(nstress, n)
+    integer :: p
+
+    do p = 1, n
+      stress(1:3, p) = factor(p)*(stress(1:3, p) + before(p)) - pressure(p)
+    end do
+    if (nstress == 4) then
+      stress(4, :) = factor*stress(4, :)
+    else if (nstress == 6) then
+      do p = 1, n
+        stress(4:6, p) = factor(p)*stress(4:6, p)
+      end do
+    end if
+  end subroutine rebuild
+
+  !> First point with a stress that is not finite; 0 when there is none.
+  pure function first_not_finite(nstress, n, stress) result(first)
+    !> Components of a stress.
+    integer, intent(in) :: nstress
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Stresses. [Pa] (nstress, n)
+    real(wp), intent(in) :: stress(nstress, n)
+    !> The point.
+    integer :: first
+    integer :: bad, p
+
+    bad = 0
+    do p = 1, n
+      bad = bad + count(.not. abs(stress(:, p)) <= huge(1.0_wp))
+    end do
+    first = 0
+    if (bad == 0) return
+    do p = n, 1, -1
+      if (any(.not. abs(stress(:, p)) <= huge(1.0_wp))) first = p
+    end do
+  end function first_not_finite
+
+end module mpm_corotation
