@@ -68,7 +68,7 @@ contains
     integer :: dim, d
 
     dim = grid%kin%dim
-    load = properties%reals('load')
+    allocate (load, source=properties%reals('load'))
     gravity = 0.0_wp
     if (size(load) == dim + 1) then
       gravity(:dim) = load(:dim)
