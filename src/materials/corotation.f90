@@ -1,19 +1,20 @@
 !> What rate laws of isotropic materials share: strains, rotations, pressure and shear stress.
 !!
-!! A step takes L as constant. The stress turns by half of the spin before the strain and
-!! by the other half behind it,
+!! A step takes L as constant. The stress turns by the spin of the step before its strain,
 !!
-!!     T* = Q T transpose(Q) + dt C:D,   T* -> law -> T,   T <- Q T transpose(Q),
-!!     Q = (I - dt W/4)**-1 (I + dt W/4),
+!!     T* = Q T transpose(Q) + dt C:D  -> law -> T,   Q = (I - dt W/2)**-1 (I + dt W/2),
 !!
-!! which is of second order in dt and keeps all invariants under spin, for steps of any length.
+!! which keeps all invariants under spin, for steps of any length, and gives the direction of the
+!! stress in a steady shear flow exactly: with q = tau/G, T_xy = tau sqrt(1 - q**2) and
+!! T_xx = -p + q tau. Elastic strains that turn as they grow are of first order in dt.
 module mpm_corotation
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t, type_1d, type_axisymmetric, type_out_of_plane, &
                             type_plane_strain
   implicit none
   private
-  public :: add_strain, first_not_finite, invariants, rebuild, shear_rates, strain_rates, turn_half
+  public :: add_strain, elastic_energy, first_not_finite, invariants, rebuild, shear_rates
+  public :: spin_stress, strain_rates
 
 contains
 
@@ -137,8 +138,8 @@ contains
     end select
   end subroutine stretching
 
-  !> Turn stresses by half of the rotation of a step.
-  pure subroutine turn_half(kin, n, dt, gradient, stress)
+  !> Turn stresses by the rotation of a step.
+  pure subroutine spin_stress(kin, n, dt, gradient, stress)
     !> Component counts.
     type(kinematics_t), intent(in) :: kin
     !> Number of points.
@@ -152,7 +153,7 @@ contains
     real(wp) :: w, c, s, mean, difference, b(3), h
     integer :: p
 
-    h = 0.125_wp*dt
+    h = 0.25_wp*dt
     select case (kin%sim_type)
     case (type_1d)
     case (type_plane_strain)
@@ -190,7 +191,7 @@ contains
         call turn(b, stress(:, p))
       end do
     end select
-  end subroutine turn_half
+  end subroutine spin_stress
 
   !> T <- Q T transpose(Q) with Q = I + 2 (B + B**2)/(1 + b.b), b the axial vector of the skew B.
   pure subroutine turn(b, t)
@@ -292,6 +293,29 @@ contains
       end do
     end if
   end subroutine rebuild
+
+  !> Sum of V (s:s/(4 G) + p**2/(2 K)), s the deviator, p the pressure.
+  pure function elastic_energy(nstress, n, lambda, shear, volume, stress) result(energy)
+    !> Components of a stress.
+    integer, intent(in) :: nstress
+    !> Number of points.
+    integer, intent(in) :: n
+    !> First Lame constant. [Pa]
+    real(wp), intent(in) :: lambda
+    !> Shear modulus. [Pa]
+    real(wp), intent(in) :: shear
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Stresses. [Pa] (nstress, n)
+    real(wp), intent(in) :: stress(nstress, n)
+    !> Sum over the points. [J]
+    real(wp) :: energy
+    real(wp) :: pressure(n), tau(n)
+
+    call invariants(nstress, n, stress, pressure, tau)
+    energy = sum(volume*(tau**2/(2.0_wp*shear) &
+                         + pressure**2/(2.0_wp*(lambda + 2.0_wp*shear/3.0_wp))))
+  end function elastic_energy
 
   !> First point with a stress that is not finite; 0 when there is none.
   pure function first_not_finite(nstress, n, stress) result(first)

@@ -232,12 +232,12 @@ contains
       cut = index(rest, new_line('a'))
       line = adjustl(rest(:cut - 1))
       rest = rest(cut + 1:)
+      if (index(line, 'material-class') > 0) cycle
       equals = index(line, '=')
       do k = 1, 3
-        if (line(:max(0, equals - 2)) == trim(keys(k))) then
-          text = text//trim(lists(k))//' '//line(equals:)//new_line('a')
-        end if
+        if (line(:max(0, equals - 2)) == trim(keys(k))) line = trim(lists(k))//' '//line(equals:)
       end do
+      text = text//line//new_line('a')
     end do
   end function example_properties
 
