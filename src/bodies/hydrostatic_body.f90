@@ -39,12 +39,13 @@ contains
                           '    node-class = "DefaultNodes"'//nl// &
                           '    material-class = "IsotropicLinearElasticity"'//nl// &
                           '    material-props = {E = 1e5, nu = 0.3}'//nl//'}')
-    call description%add_real('load', '-', 'g [m/s2], downwards along the last direction of the &
-                              &grid, and the effective density rho [kg/m3]; or the components of &
-                              &gravity along the directions of the grid, and rho', is_list=.true.)
     call description%add_real('surface', 'm', 'distance of the free surface above the highest &
                               &point; half of the distance of the points puts it where the &
                               &material ends', default=0.0_wp, lower=0.0_wp, by_name=.true.)
+    call description%add_real('load', '-', 'g [m/s2], downwards along the last direction of the &
+                              &grid, and the effective density rho [kg/m3]; or the components of &
+                              &gravity along the directions of the grid, and rho', &
+                              is_list=.true.)
     call description%add_note('The free surface lies at the highest point, half of the distance of &
                               &the points below the end of the material, unless "surface" raises &
                               &it; mpm_3d has no such choice.')
@@ -75,8 +76,9 @@ contains
     else if (size(load) == 2) then
       gravity(dim) = -load(1)
     else
-      call properties%reject('load', to_text(size(load))//' numbers', error, 'give g and rho, or '// &
-                             to_text(dim)//' components of gravity and rho')
+      call properties%reject('load', to_text(size(load))//' numbers', error, &
+                             'give g and rho, or '//to_text(dim)// &
+                             ' components of gravity and rho')
       return
     end if
     g = norm2(gravity)

@@ -60,7 +60,8 @@ contains
                               &the centre of mass, after the points have been mapped, with delta = &
                               &omega axle - J^-1 H, the inertia tensor J and the angular momentum &
                               &H. mpm_3d takes the polar moment for J, which is right in the plane &
-                              &only, and gives NaN when delta vanishes or a point lies on the axle.')
+                              &only, and gives NaN when delta vanishes or a point lies on the &
+                              &axle.')
     call description%add_note('In directions in which the grid repeats, points count at the image &
                               &nearest to the others; the wheel must be smaller than the period.')
   end subroutine wheel_body_describe
@@ -77,7 +78,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (grid%kin%dim == 1) then
-      call properties%reject('omega', 'nothing turns in TYPE 1', error, 'take another class of body')
+      call properties%reject('omega', 'nothing turns in TYPE 1', error, &
+                             'take another class of body')
       return
     end if
     self%spin = properties%real('omega')
