@@ -32,9 +32,9 @@ contains
                           &rest, given to the points through the material.', &
                           'elementary', &
                           'body'//nl//'{'//nl//'    class = "HydrostaticBody"'//nl// &
-                          '    name = "water"'//nl// &
+                          '    name = "block_0"'//nl// &
                           '    properties = {9.81, 1000}   # g, rho'//nl// &
-                          '    point-file = "water.points"'//nl// &
+                          '    point-file = "block_0.points"'//nl// &
                           '    point-class = "DefaultPoints"'//nl// &
                           '    node-class = "DefaultNodes"'//nl// &
                           '    material-class = "IsotropicLinearElasticity"'//nl// &

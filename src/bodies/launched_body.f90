@@ -31,9 +31,9 @@ contains
                           &the velocity are as in the points file.', &
                           'elementary', &
                           'body'//nl//'{'//nl//'    class = "LaunchedBody"'//nl// &
-                          '    name = "ball"'//nl// &
+                          '    name = "block_0"'//nl// &
                           '    properties = {10, 45}   # speed, angle'//nl// &
-                          '    point-file = "ball.points"'//nl// &
+                          '    point-file = "block_0.points"'//nl// &
                           '    point-class = "DefaultPoints"'//nl// &
                           '    node-class = "DefaultNodes"'//nl//'}')
     call description%add_real('speed', 'm/s', 'speed', lower=0.0_wp)

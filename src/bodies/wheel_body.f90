@@ -43,9 +43,9 @@ contains
                           'Agarwal, Senatore, Zhang, Kingsbury, Iagnemma, Goldman and Kamrin, J. &
                           &Terramechanics 85 (2019) 1-14', &
                           'body'//nl//'{'//nl//'    class = "WheelBody"'//nl// &
-                          '    name = "wheel"'//nl// &
+                          '    name = "block_0"'//nl// &
                           '    properties = {-3.0, 0.5}   # omega, t_start'//nl// &
-                          '    point-file = "wheel.points"'//nl// &
+                          '    point-file = "block_0.points"'//nl// &
                           '    point-class = "DefaultPoints"'//nl// &
                           '    node-class = "DefaultNodes"'//nl// &
                           '    material-class = "IsotropicLinearElasticity"'//nl// &
