@@ -6,9 +6,9 @@
 !!     mu = mu_1 + (mu_2 - mu_1)/(1 + b/I_m) + 5/2 phi (g eta/p)/(a I_m),
 !!     tau = tau_tr - G dt g <= (mu + beta) p,   p = p_tr + K dt (beta g + x1 + x2),
 !!
-!! x1 >= 0 keeps p >= 0, and x2 <= 0 keeps p <= C (rho_s d**2 y**2 + 2 eta y) with y = g - K_4 x2 and
-!! C = (a phi/(phi_m - phi))**2 where phi is below a gate. All of it is one equation for g: for each g
-!! there is one p, and tau - strength falls from g = 0 to tau = 0.
+!! x1 >= 0 keeps p >= 0, and x2 <= 0 keeps p <= C (rho_s d**2 y**2 + 2 eta y) with y = g - K_4 x2
+!! and C = (a phi/(phi_m - phi))**2 where phi is below a gate. All of it is one equation for g: for
+!! each g there is one p, and tau - strength falls from g = 0 to tau = 0.
 module mpm_granular_flow
   use mpm_bracket, only: bracket_t
   use mpm_kinds, only: wp
