@@ -239,7 +239,7 @@ contains
   end function material_diffusivity
 
   !> Send the fields of the memory when a frame is written: none.
-  subroutine material_write_fields(self, n, mass, volume, history, writer)
+  subroutine material_write_fields(self, n, mass, volume, stress, history, writer)
     !> The material.
     class(material_t), intent(in) :: self
     !> Number of points.
@@ -248,13 +248,15 @@ contains
     real(wp), intent(in) :: mass(n)
     !> Volumes. [m3] (n)
     real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(in) :: stress(self%kin%nstress, n)
     !> What the points remember. (n_history, n)
     real(wp), intent(in) :: history(self%n_history, n)
     !> Receiver of point fields.
     class(field_writer_t), intent(inout) :: writer
 
     associate (unused => writer, unused_mass => mass, unused_volume => volume, &
-               unused_history => history)
+               unused_stress => stress, unused_history => history)
     end associate
   end subroutine material_write_fields
 

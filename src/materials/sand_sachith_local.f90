@@ -341,7 +341,7 @@ contains
   end function sand_sachith_local_strain_energy
 
   !> Send the plastic shear strain and its rate.
-  subroutine sand_sachith_local_write_fields(self, n, mass, volume, history, writer)
+  subroutine sand_sachith_local_write_fields(self, n, mass, volume, stress, history, writer)
     !> The material.
     class(sand_sachith_local_t), intent(in) :: self
     !> Number of points.
@@ -350,12 +350,14 @@ contains
     real(wp), intent(in) :: mass(n)
     !> Volumes. [m3] (n)
     real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(in) :: stress(self%kin%nstress, n)
     !> Plastic shear strain and its rate. [-, 1/s] (2, n)
     real(wp), intent(in) :: history(self%n_history, n)
     !> Receiver of point fields.
     class(field_writer_t), intent(inout) :: writer
 
-    associate (unused => mass, unused_volume => volume)
+    associate (unused => mass, unused_volume => volume, unused_stress => stress)
     end associate
     call writer%scalar('gammap', history(1, :))
     call writer%scalar('gammap_dot', history(2, :))

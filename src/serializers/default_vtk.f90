@@ -51,8 +51,8 @@ contains
     call body%points%write_fields(writer)
     if (allocated(body%material)) then
       associate (points => body%points)
-        call body%material%write_fields(points%n, points%mass, points%volume, points%history, &
-                                        writer)
+        call body%material%write_fields(points%n, points%mass, points%volume, points%stress, &
+                                        points%history, writer)
       end associate
     end if
   end subroutine default_vtk_send_point_fields

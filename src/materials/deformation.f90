@@ -1,0 +1,213 @@
+!> Deformation gradients as materials remember them, and small tensors.
+!!
+!! | TYPE | stored components |
+!! |---|---|
+!! | 1 | xx yy zz |
+!! | 2 | xx xy yx yy zz |
+!! | 3, 4, 5 | all nine, row by row |
+!!
+!! A step with the velocity gradient L is F <- exp(dt L) F, so that det F is multiplied with
+!! exp(dt tr L) as the volume is, and a spin rotates.
+module mpm_deformation
+  use mpm_kinds, only: wp
+  use mpm_kinematics, only: kinematics_t, type_1d, type_axisymmetric, type_plane_strain
+  implicit none
+  private
+  public :: advance_deformation, deformation_size, determinant, expand_deformation, exponential
+  public :: identity, inverse, largest_step, root, store_deformation, turn_deformation
+
+  !> Largest dt |L| of a step, above which a motion is no longer one of a body.
+  real(wp), parameter :: largest_step = 30.0_wp
+  !> Largest component of a deformation gradient, so that its powers stay numbers.
+  real(wp), parameter :: largest = 1.0e30_wp
+  !> Unit tensor.
+  real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, &
+                                                   0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
+
+contains
+
+  !> Stored components of a deformation gradient.
+  pure function deformation_size(kin) result(n)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of components.
+    integer :: n
+    integer, parameter :: sizes(5) = [3, 5, 9, 9, 9]
+
+    n = sizes(kin%sim_type)
+  end function deformation_size
+
+  !> Full tensor of stored components.
+  pure function expand_deformation(kin, stored) result(f)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Stored components.
+    real(wp), intent(in) :: stored(:)
+    !> Deformation gradient.
+    real(wp) :: f(3, 3)
+
+    f = 0.0_wp
+    select case (kin%sim_type)
+    case (type_1d)
+      f(1, 1) = stored(1)
+      f(2, 2) = stored(2)
+      f(3, 3) = stored(3)
+    case (type_plane_strain)
+      f(1, 1) = stored(1)
+      f(1, 2) = stored(2)
+      f(2, 1) = stored(3)
+      f(2, 2) = stored(4)
+      f(3, 3) = stored(5)
+    case default
+      f = transpose(reshape(stored(:9), [3, 3]))
+    end select
+  end function expand_deformation
+
+  !> Stored components of a full tensor.
+  pure function store_deformation(kin, f) result(stored)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Deformation gradient.
+    real(wp), intent(in) :: f(3, 3)
+    !> Stored components, the first ones of nine.
+    real(wp) :: stored(9)
+
+    stored = 0.0_wp
+    select case (kin%sim_type)
+    case (type_1d)
+      stored(1:3) = [f(1, 1), f(2, 2), f(3, 3)]
+    case (type_plane_strain)
+      stored(1:5) = [f(1, 1), f(1, 2), f(2, 1), f(2, 2), f(3, 3)]
+    case default
+      stored = [f(1, :), f(2, :), f(3, :)]
+    end select
+  end function store_deformation
+
+  !> F <- exp(dt L) F, and its determinant.
+  pure subroutine advance_deformation(dt, l, f, j, good)
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradient. [1/s]
+    real(wp), intent(in) :: l(3, 3)
+    !> Deformation gradient.
+    real(wp), intent(inout) :: f(3, 3)
+    !> Its determinant.
+    real(wp), intent(out) :: j
+    !> Whether there is such a deformation.
+    logical, intent(out) :: good
+    real(wp) :: step(3, 3)
+
+    j = 1.0_wp
+    good = all(abs(l) <= largest_step/dt)
+    if (.not. good) return
+    call exponential(dt*l, step)
+    f = matmul(step, f)
+    good = all(abs(f) <= largest)
+    if (.not. good) return
+    j = determinant(f)
+    good = j > 1.0_wp/largest**2
+  end subroutine advance_deformation
+
+  !> Exponential of a tensor, by its series at a fraction 1/2**s and s squarings.
+  !!
+  !! At a norm of 1/64 the terms of degree 9 and more sum to less than 2**-54/9!.
+  pure subroutine exponential(a, value)
+    !> The tensor.
+    real(wp), intent(in) :: a(3, 3)
+    !> Its exponential.
+    real(wp), intent(out) :: value(3, 3)
+    real(wp) :: b(3, 3)
+    integer :: squarings, k
+
+    squarings = max(0, exponent(64.0_wp*maxval(sum(abs(a), dim=1))))
+    b = scale(a, -squarings)
+    ! exp(b) - 1 by Horner's rule; what is squared is kept without its 1, which would round it.
+    value = b/8.0_wp
+    do k = 7, 1, -1
+      value = (b + matmul(b, value))/real(k, wp)
+    end do
+    do k = 1, squarings
+      value = 2.0_wp*value + matmul(value, value)
+    end do
+    do k = 1, 3
+      value(k, k) = value(k, k) + 1.0_wp
+    end do
+  end subroutine exponential
+
+  !> Determinant.
+  pure function determinant(a) result(value)
+    !> The tensor.
+    real(wp), intent(in) :: a(3, 3)
+    !> Its determinant.
+    real(wp) :: value
+
+    value = a(1, 1)*(a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)) &
+            - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
+            + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
+  end function determinant
+
+  !> Inverse of a tensor that has one.
+  pure function inverse(a) result(b)
+    !> The tensor.
+    real(wp), intent(in) :: a(3, 3)
+    !> Its inverse.
+    real(wp) :: b(3, 3)
+    integer :: i, j, k, l, m
+
+    do i = 1, 3
+      k = mod(i, 3) + 1
+      l = mod(k, 3) + 1
+      do j = 1, 3
+        m = mod(j, 3) + 1
+        b(j, i) = a(k, m)*a(l, mod(m, 3) + 1) - a(k, mod(m, 3) + 1)*a(l, m)
+      end do
+    end do
+    b = b/dot_product(a(1, :), b(:, 1))
+  end function inverse
+
+  !> Square root of a positive definite symmetric tensor, by Denman and Beavers.
+  pure function root(a) result(y)
+    !> The tensor.
+    real(wp), intent(in) :: a(3, 3)
+    !> Its positive definite root.
+    real(wp) :: y(3, 3)
+    real(wp) :: z(3, 3), before(3, 3)
+    integer :: i
+
+    y = a
+    z = identity
+    do i = 1, 60
+      before = y
+      y = 0.5_wp*(y + inverse(z))
+      z = 0.5_wp*(z + inverse(before))
+      if (all(abs(y - before) <= 4.0_wp*epsilon(1.0_wp)*maxval(abs(y)))) exit
+    end do
+    y = 0.5_wp*(y + transpose(y))
+  end function root
+
+  !> TYPE 4: express deformation gradients in the basis of the moved points, turned by -dt L_rt.
+  pure subroutine turn_deformation(kin, n, dt, gradient, f)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
+    !> Deformation gradients, row by row. (9, n)
+    real(wp), intent(inout) :: f(9, n)
+    real(wp) :: c, s, radial(3)
+    integer :: p
+
+    if (kin%sim_type /= type_axisymmetric) return
+    do p = 1, n
+      c = cos(dt*gradient(7, p))
+      s = -sin(dt*gradient(7, p))
+      radial = f(1:3, p)
+      f(1:3, p) = c*radial + s*f(7:9, p)
+      f(7:9, p) = c*f(7:9, p) - s*radial
+    end do
+  end subroutine turn_deformation
+
+end module mpm_deformation

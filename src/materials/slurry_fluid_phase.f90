@@ -1,0 +1,279 @@
+!> The pore fluid of a mixture.
+module mpm_slurry_fluid_phase
+  use mpm_corotation, only: first_not_finite, strain_rates
+  use mpm_description, only: description_t
+  use mpm_errors, only: error_t
+  use mpm_field_writer, only: field_writer_t
+  use mpm_kinds, only: wp
+  use mpm_kinematics, only: kinematics_t
+  use mpm_material, only: material_t
+  use mpm_properties, only: properties_t
+  implicit none
+  private
+  public :: slurry_fluid_phase_t
+
+  !> Places in the memory of a point: ln J of the fluid itself, and the porosity.
+  integer, parameter :: log_j = 1, porosity = 2
+
+  !> p = -K ln J, T = 2 eta_0 (1 + 5/2 (1 - n)) D' - p I, with the porosity n and J of the fluid.
+  type, extends(material_t) :: slurry_fluid_phase_t
+    !> Bulk modulus K. [Pa]
+    real(wp) :: bulk = 0.0_wp
+    !> Viscosity of the pure fluid. [Pa s]
+    real(wp) :: viscosity = 0.0_wp
+  contains
+    procedure, nopass :: describe => slurry_fluid_phase_describe
+    procedure :: init => slurry_fluid_phase_init
+    procedure :: start => slurry_fluid_phase_start
+    procedure :: update_stress => slurry_fluid_phase_update_stress
+    procedure :: assign_stress => slurry_fluid_phase_assign_stress
+    procedure :: wave_speed => slurry_fluid_phase_wave_speed
+    procedure :: diffusivity => slurry_fluid_phase_diffusivity
+    procedure :: strain_energy => slurry_fluid_phase_strain_energy
+    procedure :: write_fields => slurry_fluid_phase_write_fields
+  end type slurry_fluid_phase_t
+
+contains
+
+  !> Purpose and properties of the class.
+  subroutine slurry_fluid_phase_describe(description)
+    !> The description.
+    type(description_t), intent(out) :: description
+    character(*), parameter :: nl = new_line('a')
+
+    call description%init('material', 'SlurryFluidPhase', &
+                          'Pore fluid of a fluid-sediment mixture: pressure from its own volume, &
+                          &viscosity of a suspension.', &
+                          'Baumgarten and Kamrin, J. Fluid Mech. 861 (2019) 721-764; Einstein, &
+                          &Ann. Phys. 324 (1906) 289-306', &
+                          '    material-class = "SlurryFluidPhase"'//nl// &
+                          '    material-props = {K = 1e5, eta_0 = 1e-3, rho_s = 2700}')
+    call description%add_real('K', 'Pa', 'bulk modulus', above=0.0_wp)
+    call description%add_real('eta_0', 'Pa s', 'viscosity of the pure fluid', lower=0.0_wp)
+    call description%add_real('rho_s', 'kg/m3', 'density of the grains; not used without a body &
+                              &of grains', above=0.0_wp)
+    call description%add_real('h', 'm', 'length of the shift of points; not used without it', &
+                              default=0.0_wp, lower=0.0_wp)
+    call description%add_real('alpha', '-', 'strength of the shift of points: 0, there is none', &
+                              default=0.0_wp, lower=0.0_wp)
+    call description%add_string('solid', 'body of the grains: not available, the porosity is 1', &
+                                default='')
+    call description%add_integer('solid_id', 'number of that body: not available', default=-1, &
+                                 lower=-1)
+    call description%add_note('The class is for one body of fluid without grains. The porosity, &
+                              &and the volume that grains push out of a point, wait for the &
+                              &contacts of mixtures; until then the law is that of &
+                              &BarotropicViscousFluid.')
+    call description%add_note('A pressure that a body assigns changes J and leaves mass and &
+                              &volume.')
+  end subroutine slurry_fluid_phase_describe
+
+  !> Set the constants from the properties.
+  subroutine slurry_fluid_phase_init(self, kin, properties, error)
+    !> The material.
+    class(slurry_fluid_phase_t), intent(inout) :: self
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Checked properties.
+    type(properties_t), intent(in) :: properties
+    !> A body of grains, or a shift of points.
+    type(error_t), allocatable, intent(out) :: error
+
+    self%kin = kin
+    self%n_history = 2
+    self%bulk = properties%real('K')
+    self%viscosity = properties%real('eta_0')
+    if (properties%real('alpha') > 0.0_wp) then
+      call properties%reject('alpha', 'points are not shifted', error, 'leave h and alpha out, or &
+                             &give alpha = 0')
+    else if (len(properties%string('solid')) > 0) then
+      call properties%reject('solid', 'a body of grains is not available', error, 'leave it out: &
+                             &the porosity is 1')
+    else if (properties%integer('solid_id') >= 0) then
+      call properties%reject('solid_id', 'a body of grains is not available', error, 'leave it &
+                             &out: the porosity is 1')
+    end if
+  end subroutine slurry_fluid_phase_init
+
+  !> Points begin free of pressure, with nothing but fluid.
+  pure subroutine slurry_fluid_phase_start(self, n, mass, volume, history)
+    !> The material.
+    class(slurry_fluid_phase_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> ln J and porosity. (2, n)
+    real(wp), intent(out) :: history(self%n_history, n)
+
+    associate (unused => mass, unused_volume => volume)
+    end associate
+    history(log_j, :) = 0.0_wp
+    history(porosity, :) = 1.0_wp
+  end subroutine slurry_fluid_phase_start
+
+  !> The stress of a block of points at the end of a step.
+  pure subroutine slurry_fluid_phase_update_stress(self, n, dt, gradient, mass, volume, stress, &
+                                                   history, first_bad)
+    !> The material.
+    class(slurry_fluid_phase_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients of the step. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(self%kin%ngrad, n)
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes at the end of the step. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(self%kin%nstress, n)
+    !> ln J and porosity. (2, n)
+    real(wp), intent(inout) :: history(self%n_history, n)
+    !> First point whose stress is not finite; 0 when there is none.
+    integer, intent(out) :: first_bad
+    real(wp) :: trace(n), eta
+    integer :: p
+
+    associate (unused => mass, unused_volume => volume)
+    end associate
+    call strain_rates(self%kin, n, 2.0_wp*self%viscosity, gradient, stress, trace)
+    do p = 1, n
+      eta = 1.0_wp + 2.5_wp*(1.0_wp - history(porosity, p))
+      history(log_j, p) = history(log_j, p) + dt*trace(p)
+      stress(:, p) = eta*stress(:, p)
+      stress(1:3, p) = stress(1:3, p) + self%bulk*history(log_j, p) &
+                       - (2.0_wp*eta*self%viscosity/3.0_wp)*trace(p)
+    end do
+    first_bad = first_not_finite(self%kin%nstress, n, stress)
+  end subroutine slurry_fluid_phase_update_stress
+
+  !> Give points the pressure of a stress; a fluid at rest has no deviator.
+  pure subroutine slurry_fluid_phase_assign_stress(self, n, target, mass, volume, stress, history, &
+                                                   first_bad)
+    !> The material.
+    class(slurry_fluid_phase_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Stresses that are asked for. [Pa] (nstress, n)
+    real(wp), intent(in) :: target(self%kin%nstress, n)
+    !> Masses. [kg] (n)
+    real(wp), intent(inout) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(self%kin%nstress, n)
+    !> ln J and porosity. (2, n)
+    real(wp), intent(inout) :: history(self%n_history, n)
+    !> Always 0.
+    integer, intent(out) :: first_bad
+    real(wp) :: pressure
+    integer :: p
+
+    associate (unused => mass, unused_volume => volume)
+    end associate
+    first_bad = 0
+    do p = 1, n
+      pressure = -(target(1, p) + target(2, p) + target(3, p))/3.0_wp
+      history(log_j, p) = -pressure/self%bulk
+      stress(:, p) = 0.0_wp
+      stress(1:3, p) = -pressure
+    end do
+  end subroutine slurry_fluid_phase_assign_stress
+
+  !> Largest sqrt(K/(n rho)): locked grains leave the fluid the share n of the volume.
+  pure function slurry_fluid_phase_wave_speed(self, n, mass, volume, stress, history) result(speed)
+    !> The material.
+    class(slurry_fluid_phase_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(in) :: stress(self%kin%nstress, n)
+    !> ln J and porosity. (2, n)
+    real(wp), intent(in) :: history(self%n_history, n)
+    !> Largest speed of sound. [m/s]
+    real(wp) :: speed
+
+    associate (unused => stress)
+    end associate
+    speed = 0.0_wp
+    if (n > 0) speed = sqrt(self%bulk*maxval(volume/(mass*history(porosity, :))))
+  end function slurry_fluid_phase_wave_speed
+
+  !> Largest 4 eta/(3 rho), with the viscosity of the densest suspension.
+  pure function slurry_fluid_phase_diffusivity(self, n, mass, volume) result(diffusivity)
+    !> The material.
+    class(slurry_fluid_phase_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Factor of the second derivative of a velocity. [m2/s]
+    real(wp) :: diffusivity
+
+    diffusivity = 0.0_wp
+    if (n > 0) diffusivity = 3.5_wp*4.0_wp*self%viscosity/3.0_wp*maxval(volume/mass)
+  end function slurry_fluid_phase_diffusivity
+
+  !> Sum of n V/J K (J ln J - J + 1), the work of the pressure on the fluid itself.
+  pure function slurry_fluid_phase_strain_energy(self, n, mass, volume, stress, history) &
+    result(energy)
+    !> The material.
+    class(slurry_fluid_phase_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(in) :: stress(self%kin%nstress, n)
+    !> ln J and porosity. (2, n)
+    real(wp), intent(in) :: history(self%n_history, n)
+    !> Sum over the points. [J]
+    real(wp) :: energy
+    integer :: p
+
+    associate (unused => stress, unused_mass => mass)
+    end associate
+    energy = 0.0_wp
+    do p = 1, n
+      associate (x => history(log_j, p))
+        energy = energy + history(porosity, p)*volume(p)*self%bulk*(x - 1.0_wp + exp(-x))
+      end associate
+    end do
+  end function slurry_fluid_phase_strain_energy
+
+  !> Send J and the porosity.
+  subroutine slurry_fluid_phase_write_fields(self, n, mass, volume, stress, history, writer)
+    !> The material.
+    class(slurry_fluid_phase_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(in) :: stress(self%kin%nstress, n)
+    !> ln J and porosity. (2, n)
+    real(wp), intent(in) :: history(self%n_history, n)
+    !> Receiver of point fields.
+    class(field_writer_t), intent(inout) :: writer
+
+    associate (unused => mass, unused_volume => volume, unused_stress => stress)
+    end associate
+    call writer%scalar('J', exp(history(log_j, :)))
+    call writer%scalar('porosity', history(porosity, :))
+  end subroutine slurry_fluid_phase_write_fields
+
+end module mpm_slurry_fluid_phase
