@@ -12,6 +12,8 @@ program mpm3d
   use mpm_job_report, only: report_job
   use mpm_monitor, only: monitor_t, quiet
   use mpm_registry, only: describe_classes, role_names
+  use mpm_restart, only: restart
+  use mpm_signals, only: ignore_file_limit, watch_signals
   use mpm_strings, only: append_text, excerpt, nearest_name, string_t
   implicit none
 
@@ -71,13 +73,20 @@ contains
 
     allocate (job)
     monitor%verbosity = command%verbosity
-    call configure(command%config, command%overrides, job, error)
-    if (allocated(error)) return
-    if (command%threads > 0) job%model%threads = command%threads
-    call job%start(error)
-    if (allocated(error)) return
+    if (len(command%checkpoint) > 0) then
+      call restart(command%checkpoint, command%overrides, command%threads, job, monitor, error)
+      if (allocated(error)) return
+    else
+      call configure(command%config, command%overrides, job, error)
+      if (allocated(error)) return
+      if (command%threads > 0) job%model%threads = command%threads
+      call job%start(error)
+      if (allocated(error)) return
+    end if
     if (command%verbosity > quiet) call report_job(job)
     if (command%action == 'check') return
+    call ignore_file_limit()
+    call watch_signals()
     call job%run(monitor, error)
   end subroutine run_job
 

@@ -9,9 +9,10 @@ module mpm_body
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
+  use mpm_store, only: store_t
   implicit none
   private
-  public :: body_slot_t, body_t
+  public :: body_restore, body_save, body_slot_t, body_t
 
   !> A body: points, nodes, and if given a material and a boundary.
   type, abstract, extends(configurable_t) :: body_t
@@ -34,6 +35,8 @@ module mpm_body
     procedure(init_i), deferred :: init
     !> Change the points' velocities in a step, when they have been mapped.
     procedure :: act_on_points => body_act_on_points
+    procedure :: save => body_save
+    procedure :: restore => body_restore
   end type body_t
 
   !> A body in a list of bodies.
@@ -70,5 +73,27 @@ contains
     associate (unused => self, unused_time => time)
     end associate
   end subroutine body_act_on_points
+
+  !> Save the state of the body itself; its parts save theirs.
+  !!
+  !! Public since a class that overrides it can't call it by the name of an abstract parent.
+  subroutine body_save(self, store)
+    !> The body.
+    class(body_t), intent(in) :: self
+    !> Where to.
+    class(store_t), intent(inout) :: store
+
+    call store%put('active', self%active)
+  end subroutine body_save
+
+  !> Take back the state of the body itself.
+  subroutine body_restore(self, store)
+    !> The body, started.
+    class(body_t), intent(inout) :: self
+    !> Where from.
+    class(store_t), intent(inout) :: store
+
+    call store%get('active', self%active)
+  end subroutine body_restore
 
 end module mpm_body
