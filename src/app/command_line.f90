@@ -13,6 +13,8 @@ module mpm_command_line
     character(:), allocatable :: action
     !> The config of `run` and `check`.
     character(:), allocatable :: config
+    !> The checkpoint to go on from; empty for none.
+    character(:), allocatable :: checkpoint
     !> The role of `list`, or '' for all; the class of `describe`.
     character(:), allocatable :: subject
     !> Texts of `--set`.
@@ -33,6 +35,7 @@ contains
 
     text = 'mpm3d: material point method for solids and grains'//nl//nl// &
            'usage: mpm3d -c FILE [options]     run the scene of a config'//nl// &
+           '       mpm3d -r FILE [options]     go on from a checkpoint'//nl// &
            '       mpm3d -c FILE --check       read everything, run nothing, report sizes'//nl// &
            '       mpm3d --list [ROLE]         classes that a config can name'//nl// &
            '       mpm3d --describe CLASS      purpose and properties of a class'//nl// &
@@ -42,7 +45,7 @@ contains
            '                                   bodies and contacts: body.NAME.KEY=VALUE'//nl// &
            '         -q, -v                    say less, say more'//nl//nl// &
            'exit status: 0 done, 1 wrong usage, 2 bad input, 3 the simulation went bad,'//nl// &
-           '             4 output failed'
+           '             4 output failed, 130 or 143 stopped by SIGINT or SIGTERM'
   end function usage
 
   !> Read the arguments of the program.
@@ -56,6 +59,7 @@ contains
 
     command%action = ''
     command%config = ''
+    command%checkpoint = ''
     command%subject = ''
     allocate (command%overrides(0))
     i = 1
@@ -64,6 +68,8 @@ contains
       select case (argument)
       case ('-c', '--config')
         call next_value(i, argument, 'a config file', command%config, error)
+      case ('-r', '--restart')
+        call next_value(i, argument, 'a checkpoint', command%checkpoint, error)
       case ('--check')
         call set_action(command, 'check', error)
       case ('--list')
@@ -108,13 +114,20 @@ contains
     !> No action, or no config.
     type(error_t), allocatable, intent(inout) :: error
 
-    if (command%action == '' .and. len(command%config) > 0) command%action = 'run'
+    if (len(command%config) > 0 .and. len(command%checkpoint) > 0) then
+      call raise(error, err_usage, '-c and -r exclude each other', hint='a checkpoint has its &
+                 &config in it; --set changes it')
+      return
+    end if
+    if (command%action == '' .and. len(command%config//command%checkpoint) > 0) then
+      command%action = 'run'
+    end if
     select case (command%action)
     case ('')
       call raise(error, err_usage, 'nothing to do', hint='mpm3d -c FILE runs a scene; mpm3d --help &
                  &tells more')
     case ('check')
-      if (len(command%config) == 0) then
+      if (len(command%config//command%checkpoint) == 0) then
         call raise(error, err_usage, '--check needs a config', hint='mpm3d -c FILE --check')
       end if
     case default
@@ -196,9 +209,9 @@ contains
     character(*), intent(in) :: argument
     !> The error.
     type(error_t), allocatable, intent(inout) :: error
-    character(10), parameter :: options(8) = &
+    character(10), parameter :: options(9) = &
       [character(10) :: '--check', '--list', '--describe', '--version', '--help', '--threads', &
-       '--set', '--config']
+       '--set', '--config', '--restart']
     type(string_t) :: known(size(options))
     character(:), allocatable :: hint
     integer :: i

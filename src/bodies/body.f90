@@ -8,9 +8,10 @@ module mpm_body
   use mpm_nodes, only: nodes_t
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
+  use mpm_store, only: store_t
   implicit none
   private
-  public :: body_slot_t, body_t
+  public :: body_restore, body_save, body_slot_t, body_t
 
   !> A body: points, nodes, and if given a material and a boundary.
   type, abstract, extends(configurable_t) :: body_t
@@ -31,6 +32,8 @@ module mpm_body
   contains
     !> Set the body's initial state, when its parts are set up.
     procedure(init_i), deferred :: init
+    procedure :: save => body_save
+    procedure :: restore => body_restore
   end type body_t
 
   !> A body in a list of bodies.
@@ -54,5 +57,29 @@ module mpm_body
       type(error_t), allocatable, intent(out) :: error
     end subroutine init_i
   end interface
+
+contains
+
+  !> Save the state of the body itself; its parts save theirs.
+  !!
+  !! Public since a class that overrides it can't call it by the name of an abstract parent.
+  subroutine body_save(self, store)
+    !> The body.
+    class(body_t), intent(in) :: self
+    !> Where to.
+    class(store_t), intent(inout) :: store
+
+    call store%put('active', self%active)
+  end subroutine body_save
+
+  !> Take back the state of the body itself.
+  subroutine body_restore(self, store)
+    !> The body, started.
+    class(body_t), intent(inout) :: self
+    !> Where from.
+    class(store_t), intent(inout) :: store
+
+    call store%get('active', self%active)
+  end subroutine body_restore
 
 end module mpm_body

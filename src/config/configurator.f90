@@ -14,12 +14,13 @@ module mpm_configurator
   use mpm_kinematics, only: make_kinematics
   use mpm_object_reader, only: class_of, lacks, properties_of
   use mpm_override, only: parse_override
-  use mpm_parser, only: parse_file
+  use mpm_parser, only: parse_text
   use mpm_properties, only: properties_t
   use mpm_section_reader, only: check_keys, single_value
   use mpm_serializer_registry, only: create_serializer
   use mpm_solver_registry, only: create_solver
   use mpm_strings, only: excerpt, nearest_name, string_t, to_text
+  use mpm_text_file, only: read_whole_file
   implicit none
   private
   public :: configure
@@ -38,7 +39,7 @@ module mpm_configurator
 contains
 
   !> Build a job from a config.
-  subroutine configure(path, overrides, job, error)
+  subroutine configure(path, overrides, job, error, text)
     !> The config.
     character(*), intent(in) :: path
     !> Texts `section.key=value` that take the place of what the config says.
@@ -47,11 +48,21 @@ contains
     type(job_t), intent(out) :: job
     !> The first thing wrong with the config or the files that it names.
     type(error_t), allocatable, intent(out) :: error
+    !> Text of the config, when it is not to be read from the file.
+    character(*), intent(in), optional :: text
     type(document_t) :: document
     integer :: i
 
     job%config = path
-    call parse_file(path, document, error)
+    job%checkpoints%config = path
+    job%checkpoints%overrides = overrides
+    if (present(text)) then
+      job%checkpoints%text = text
+    else
+      call read_whole_file(path, job%checkpoints%text, error)
+      if (allocated(error)) return
+    end if
+    call parse_text(job%checkpoints%text, path, document, error)
     if (allocated(error)) return
     if (document%is_empty()) then
       call raise(error, err_input, 'the config is empty', path, &

@@ -7,6 +7,7 @@ module mpm_adaptive_driver
   use mpm_properties, only: properties_t
   use mpm_serializer, only: serializer_t
   use mpm_solver, only: solver_t
+  use mpm_store, only: store_t
   use mpm_strings, only: to_text
   use mpm_threads, only: useful_threads
   use mpm_user_defined_gravity_driver, only: add_gravity_properties, user_defined_gravity_driver_t
@@ -27,6 +28,8 @@ module mpm_adaptive_driver
     procedure :: init => adaptive_driver_init
     procedure :: next_step => adaptive_driver_next_step
     procedure :: plan => adaptive_driver_plan
+    procedure :: save => adaptive_driver_save
+    procedure :: restore => adaptive_driver_restore
     !> Longest step that the state allows.
     procedure :: longest_step => adaptive_driver_longest_step
   end type adaptive_driver_t
@@ -98,7 +101,7 @@ contains
     self%chosen = longest
     t_next = self%t_stop
     if (serializer%rate > 0.0_wp) then
-      frame_time = model%t_start + real(serializer%frames, wp)/serializer%rate
+      frame_time = serializer%next_time(model)
       ! A frame time that is the stop time up to rounding needs no sliver of a step behind it.
       if (frame_time < self%t_stop - 1.0e-6_wp*longest) t_next = frame_time
     end if
@@ -204,5 +207,25 @@ contains
     steps = ceiling(max(0.0_wp, min(number - 1.0e-6_wp, real(huge(1), wp))), lp)
     exact = .false.
   end subroutine adaptive_driver_plan
+
+  !> Save the length of the last step.
+  subroutine adaptive_driver_save(self, store)
+    !> The driver.
+    class(adaptive_driver_t), intent(in) :: self
+    !> Where to.
+    class(store_t), intent(inout) :: store
+
+    call store%put('chosen', self%chosen)
+  end subroutine adaptive_driver_save
+
+  !> Take back the length of the last step.
+  subroutine adaptive_driver_restore(self, store)
+    !> The driver.
+    class(adaptive_driver_t), intent(inout) :: self
+    !> Where from.
+    class(store_t), intent(inout) :: store
+
+    call store%get('chosen', self%chosen)
+  end subroutine adaptive_driver_restore
 
 end module mpm_adaptive_driver

@@ -2,6 +2,7 @@
 module mpm_driver
   use mpm_configurable, only: configurable_t
   use mpm_errors, only: error_t
+  use mpm_keeper, only: keeper_t
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t, type_1d, type_3d
   use mpm_model, only: model_t
@@ -132,7 +133,8 @@ contains
     t_next = model%time
     dt = 0.0_wp
     if (model%step >= steps) return
-    t_next = model%t_start + real(model%step + 1, wp)*model%dt
+    t_next = model%t_start + model%t_counted + &
+             real(model%step + 1 - model%step_counted, wp)*model%dt
     dt = model%dt
     if (model%step + 1 == steps) then
       t_next = self%t_stop
@@ -169,13 +171,13 @@ contains
     integer(lp) :: steps
     real(wp) :: exact
 
-    exact = (self%t_stop - model%t_start)/model%dt
+    exact = (self%t_stop - model%t_start - model%t_counted)/model%dt
     ! A span that is a multiple of dt up to rounding needs no sliver of a step at its end.
-    steps = max(0_lp, ceiling(exact - 1.0e-6_wp, lp))
+    steps = model%step_counted + max(0_lp, ceiling(exact - 1.0e-6_wp, lp))
   end function driver_step_count
 
   !> Run from the start time to the stop time.
-  subroutine driver_run(self, model, solver, serializer, monitor, error)
+  subroutine driver_run(self, model, solver, serializer, monitor, error, keeper)
     !> The driver.
     class(driver_t), intent(inout) :: self
     !> The model, prepared.
@@ -188,15 +190,19 @@ contains
     class(monitor_t), intent(inout) :: monitor
     !> The simulation went bad, or a frame can't be written.
     type(error_t), allocatable, intent(out) :: error
+    !> What looks after the run between its steps.
+    class(keeper_t), intent(inout), optional :: keeper
     integer(lp) :: steps
     real(wp) :: dt, t_next
     logical :: frame, exact
 
     call self%plan(model, solver, steps, exact)
     call monitor%begin(model, solver, steps, exact)
-    call serializer%write_frame(model, error)
-    if (allocated(error)) return
-    call monitor%frame(model, serializer%frames)
+    if (serializer%frames == 0) then
+      call serializer%write_frame(model, error)
+      if (allocated(error)) return
+      call monitor%frame(model, serializer%frames)
+    end if
     do
       call self%next_step(model, solver, serializer, dt, t_next, error)
       if (allocated(error)) exit
@@ -215,7 +221,13 @@ contains
         call monitor%frame(model, serializer%frames)
       end if
       call monitor%progress(model, self%t_stop, serializer%frames)
+      if (.not. present(keeper)) cycle
+      call keeper%look(model, self, solver, serializer, monitor, .false., error)
+      if (allocated(error)) exit
     end do
+    if (present(keeper) .and. .not. allocated(error)) then
+      call keeper%look(model, self, solver, serializer, monitor, .true., error)
+    end if
     if (allocated(error)) then
       call monitor%clear_line()
     else

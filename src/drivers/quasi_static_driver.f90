@@ -8,6 +8,7 @@ module mpm_quasi_static_driver
   use mpm_properties, only: properties_t
   use mpm_serializer, only: serializer_t
   use mpm_solver, only: solver_t
+  use mpm_store, only: store_t
   use mpm_threads, only: useful_threads
   use mpm_user_defined_gravity_driver, only: add_gravity_properties
   implicit none
@@ -36,6 +37,8 @@ module mpm_quasi_static_driver
     procedure :: plan => quasi_static_driver_plan
     procedure :: next_step => quasi_static_driver_next_step
     procedure :: before_step => quasi_static_driver_before_step
+    procedure :: save => quasi_static_driver_save
+    procedure :: restore => quasi_static_driver_restore
   end type quasi_static_driver_t
 
 contains
@@ -245,5 +248,27 @@ contains
     end do
     !$omp end parallel do
   end subroutine scale
+
+  !> Save the kinetic energy before the last step.
+  subroutine quasi_static_driver_save(self, store)
+    !> The driver.
+    class(quasi_static_driver_t), intent(in) :: self
+    !> Where to.
+    class(store_t), intent(inout) :: store
+
+    call self%adaptive_driver_t%save(store)
+    call store%put('energy', self%energy)
+  end subroutine quasi_static_driver_save
+
+  !> Take back the kinetic energy before the last step.
+  subroutine quasi_static_driver_restore(self, store)
+    !> The driver.
+    class(quasi_static_driver_t), intent(inout) :: self
+    !> Where from.
+    class(store_t), intent(inout) :: store
+
+    call self%adaptive_driver_t%restore(store)
+    call store%get('energy', self%energy)
+  end subroutine quasi_static_driver_restore
 
 end module mpm_quasi_static_driver

@@ -1,5 +1,6 @@
 !> A simulation with all its objects.
 module mpm_job
+  use mpm_checkpoints, only: checkpoints_t
   use mpm_driver, only: driver_t
   use mpm_errors, only: error_t
   use mpm_kinds, only: lp
@@ -24,6 +25,10 @@ module mpm_job
     class(solver_t), allocatable :: solver
     !> Frames.
     class(serializer_t), allocatable :: serializer
+    !> Checkpoints.
+    type(checkpoints_t) :: checkpoints
+    !> Whether the run goes on from a checkpoint.
+    logical :: goes_on = .false.
   contains
     !> Bring the model to its start: body forces, bases, first mapping.
     procedure :: start => job_start
@@ -46,6 +51,7 @@ contains
     self%model%time = self%model%t_start
     if (self%model%threads == 0) self%model%threads = omp_get_max_threads()
     do i = 1, size(self%model%bodies)
+      call self%model%bodies(i)%body%points%sign()
       self%model%bodies(i)%body%points%body_force = self%driver%body_force(self%model%kin)
     end do
     call self%driver%prepare(self%model, error)
@@ -68,11 +74,15 @@ contains
 
     call self%serializer%open(self%model, error)
     if (allocated(error)) return
+    call self%checkpoints%begin(self%model, self%serializer, error)
+    if (allocated(error)) return
     do i = 1, size(self%model%bodies)
+      if (self%goes_on) exit
       call self%model%bodies(i)%body%points%write_table(error)
       if (allocated(error)) return
     end do
-    call self%driver%run(self%model, self%solver, self%serializer, monitor, error)
+    call self%driver%run(self%model, self%solver, self%serializer, monitor, error, &
+                         self%checkpoints)
   end subroutine job_run
 
   !> Bytes held by the points and nodes of all bodies.

@@ -17,6 +17,11 @@ module mpm_model
     integer :: threads = 1
     !> Start time. [s]
     real(wp) :: t_start = 0.0_wp
+    !> Time and step from which steps are counted, when dt or the end of the run was changed at a
+    !! restart: time since the start [s].
+    real(wp) :: t_counted = 0.0_wp
+    !> Steps made up to there.
+    integer(lp) :: step_counted = 0
     !> Time of the state. [s]
     real(wp) :: time = 0.0_wp
     !> Time step as configured. [s]

@@ -1,12 +1,15 @@
 !> What the program tells of a run: summaries at its start and end, progress, warnings.
 module mpm_monitor
-  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mpm_console, only: finish_output, put_line, put_now
   use mpm_energy, only: energy_t, measure
+  use mpm_errors, only: error_t
   use mpm_files, only: is_terminal
   use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
   use mpm_serializer, only: serializer_t
   use mpm_solver, only: solver_t
+  use mpm_store, only: store_t
   use mpm_strings, only: counted, to_text
   implicit none
   private
@@ -44,6 +47,12 @@ module mpm_monitor
     logical, allocatable, private :: warned(:)
     !> Lost points that have been reported.
     integer, private :: lost_reported = 0
+    !> Step of the model at the start of the loop.
+    integer(lp), private :: first_step = 0
+    !> Its time. [s]
+    real(wp), private :: first_time = 0.0_wp
+    !> Whether the run goes on from where it was saved.
+    logical, private :: goes_on = .false.
     !> Sum over the steps of the points inside the grid.
     real(wp), private :: point_steps = 0.0_wp
   contains
@@ -57,6 +66,10 @@ module mpm_monitor
     procedure :: progress => monitor_progress
     !> End of the run.
     procedure :: finish => monitor_finish
+    !> Save what the end of the run tells of its start.
+    procedure :: save => monitor_save
+    !> Take it back.
+    procedure :: restore => monitor_restore
     !> Write a line unless quiet.
     procedure :: say => monitor_say
     !> Write a warning.
@@ -85,11 +98,15 @@ contains
     integer :: i
 
     self%fixed_step = exact
-    call measure(model, self%at_start)
+    self%first_step = model%step
+    self%first_time = model%time
+    if (.not. self%goes_on) call measure(model, self%at_start)
     self%shows_progress = is_terminal(standard_output)
     if (self%verbosity /= normal) self%shows_progress = .false.
-    allocate (self%warned(size(model%bodies)))
-    self%warned = .false.
+    if (.not. allocated(self%warned)) then
+      allocate (self%warned(size(model%bodies)))
+      self%warned = .false.
+    end if
     do i = 1, size(model%bodies)
       if (model%bodies(i)%body%points%n_inside > 0) cycle
       call self%warn('body "'//model%bodies(i)%body%name//'" has no active point')
@@ -97,7 +114,12 @@ contains
     call self%check(model, solver)
     planned = counted(steps, 'step')
     if (.not. exact) planned = 'about '//planned
-    call self%say('running '//planned//' on '//counted(model%threads, 'thread'))
+    if (self%goes_on) then
+      call self%say('going on from step '//to_text(model%step)//', t = '//to_text(model%time)// &
+                    ' s, to '//planned//' on '//counted(model%threads, 'thread'))
+    else
+      call self%say('running '//planned//' on '//counted(model%threads, 'thread'))
+    end if
     call system_clock(self%clock_start)
     self%clock_progress = self%clock_start
   end subroutine monitor_begin
@@ -156,7 +178,7 @@ contains
     !> Frames written so far.
     integer, intent(in) :: frames
     integer(lp) :: now, rate
-    real(wp) :: seconds, speed, part
+    real(wp) :: seconds, speed, part, done
     integer :: i
 
     do i = 1, size(model%bodies)
@@ -168,14 +190,13 @@ contains
     if (real(now - self%clock_progress, wp) < progress_interval*real(rate, wp)) return
     self%clock_progress = now
     seconds = self%elapsed()
-    speed = real(model%step, wp)/seconds
-    part = (model%time - model%t_start)/(t_stop - model%t_start)
-    write (output_unit, '(a)', advance='no') start_of_line//'t = '// &
-      to_text(model%time, 4)//' s   '// &
-      to_text(int(100.0_wp*part))//' %   frames '//to_text(frames)//'   '// &
+    speed = real(model%step - self%first_step, wp)/seconds
+    part = (model%time - self%first_time)/(t_stop - self%first_time)
+    done = (model%time - model%t_start)/(t_stop - model%t_start)
+    call put_now(start_of_line//'t = '//to_text(model%time, 4)//' s   '// &
+      to_text(int(100.0_wp*done))//' %   frames '//to_text(frames)//'   '// &
       to_text(speed, 3)//' steps/s   left '// &
-      duration(anint(seconds*(1.0_wp - part)/part))//erase_line
-    flush (output_unit)
+      duration(anint(seconds*(1.0_wp - part)/part))//erase_line)
   end subroutine monitor_progress
 
   !> End of the run: cost, momentum and energy.
@@ -215,6 +236,44 @@ contains
                   ' ('//to_text(real(serializer%bytes, wp)/1.0e6_wp, 3)//' MB)')
   end subroutine monitor_finish
 
+  !> Save what the end of the run tells of its start.
+  subroutine monitor_save(self, store)
+    !> The monitor.
+    class(monitor_t), intent(in) :: self
+    !> Where to.
+    class(store_t), intent(inout) :: store
+
+    associate (start => self%at_start)
+      call store%put('momentum', start%momentum)
+      call store%put('energies', [start%momentum_scale, start%kinetic, start%strain, &
+                                  start%potential])
+    end associate
+    call store%put('warned', self%warned)
+    call store%put('lost_reported', self%lost_reported)
+  end subroutine monitor_save
+
+  !> Take back what the end of the run tells of its start.
+  subroutine monitor_restore(self, store)
+    !> The monitor, before the loop.
+    class(monitor_t), intent(inout) :: self
+    !> Where from.
+    class(store_t), intent(inout) :: store
+    real(wp) :: energies(4)
+
+    energies = 0.0_wp
+    self%goes_on = .true.
+    associate (start => self%at_start)
+      call store%get_fixed('momentum', start%momentum)
+      call store%get_fixed('energies', energies)
+      start%momentum_scale = energies(1)
+      start%kinetic = energies(2)
+      start%strain = energies(3)
+      start%potential = energies(4)
+    end associate
+    call store%get('warned', self%warned)
+    call store%get('lost_reported', self%lost_reported)
+  end subroutine monitor_restore
+
   !> Write a line unless quiet.
   subroutine monitor_say(self, text)
     !> The monitor.
@@ -222,7 +281,7 @@ contains
     !> The line.
     character(*), intent(in) :: text
 
-    if (self%verbosity >= normal) write (output_unit, '(a)') text
+    if (self%verbosity >= normal) call put_line(text)
   end subroutine monitor_say
 
   !> Write a warning.
@@ -231,9 +290,11 @@ contains
     class(monitor_t), intent(in) :: self
     !> What to warn of.
     character(*), intent(in) :: text
+    type(error_t), allocatable :: ignored
 
     call self%clear_line()
-    flush (output_unit)
+    ! Whether it fails is asked at the end of the program.
+    call finish_output(ignored)
     write (error_unit, '(a)') 'warning: '//text
   end subroutine monitor_warn
 
@@ -242,7 +303,7 @@ contains
     !> The monitor.
     class(monitor_t), intent(in) :: self
 
-    if (self%shows_progress) write (output_unit, '(a)', advance='no') start_of_line//erase_line
+    if (self%shows_progress) call put_now(start_of_line//erase_line)
   end subroutine monitor_clear_line
 
   !> Seconds since the start of the loop.

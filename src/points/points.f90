@@ -1,19 +1,21 @@
 !> The role `points`: the material points of one body.
 module mpm_points
   use mpm_configurable, only: configurable_t
-  use mpm_errors, only: error_t
+  use mpm_errors, only: err_input, error_t, raise
   use mpm_field_writer, only: field_writer_t
   use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
+  use mpm_digest, only: digest_t
   use mpm_document, only: value_t
   use mpm_properties, only: properties_t
   use mpm_seam, only: wrap_points
   use mpm_sort, only: base_bounds, sort_by_cell
   use mpm_stencil, only: outside, stencil_keys, stencil_t
+  use mpm_store, only: store_t
   implicit none
   private
-  public :: points_t
+  public :: points_restore, points_save, points_t
 
   !> Mass of a node whose velocity leaves out internal forces, relative to the points' mean mass.
   !!
@@ -86,6 +88,8 @@ module mpm_points
     integer :: n_changed = 0
     !> Points whose key changed since the arrays were sorted.
     integer :: n_drifted = 0
+    !> Digest of the points as they were read; empty until `sign` is called.
+    character(:), allocatable :: digest
   contains
     !> Read or make the points.
     procedure(init_i), deferred :: init
@@ -103,6 +107,10 @@ module mpm_points
     procedure :: permute => points_permute
     !> Storage slot of each point of the points file.
     procedure :: slots => points_slots
+    !> Take the digest of the points as they are.
+    procedure :: sign => points_sign
+    procedure :: save => points_save
+    procedure :: restore => points_restore
   end type points_t
 
   abstract interface
@@ -322,5 +330,111 @@ contains
       slot(self%id(p)) = p
     end do
   end function points_slots
+
+  !> Take the digest of the points as they are, so that a restart knows them again.
+  subroutine points_sign(self)
+    !> The points, in the order of the points file.
+    class(points_t), intent(inout) :: self
+    type(digest_t) :: digest
+
+    call digest%add(self%mass)
+    call digest%add(self%volume)
+    call digest%add_columns(self%x)
+    self%digest = digest%text()
+  end subroutine points_sign
+
+  !> Save all arrays in storage order.
+  !!
+  !! Public since a class that overrides it can't call it by the name of an abstract parent.
+  subroutine points_save(self, store)
+    !> The points.
+    class(points_t), intent(in) :: self
+    !> Where to.
+    class(store_t), intent(inout) :: store
+    character(:), allocatable :: digest
+
+    digest = ''
+    if (allocated(self%digest)) digest = self%digest
+    call store%put('digest', digest)
+    call store%put('n', self%n)
+    call store%put('n_inside', self%n_inside)
+    call store%put('n_lost', self%n_lost)
+    call store%put('n_changed', self%n_changed)
+    call store%put('n_drifted', self%n_drifted)
+    call store%put('lo', self%lo)
+    call store%put('hi', self%hi)
+    call store%put('mass_cutoff', self%mass_cutoff)
+    call store%put('id', self%id)
+    call store%put('key', self%key)
+    call store%put('order', self%order(:self%n_inside))
+    if (allocated(self%row_offset)) call store%put('row_offset', self%row_offset)
+    call store%put('mass', self%mass)
+    call store%put('volume', self%volume)
+    call store%put('extent', self%extent)
+    call store%put('x', self%x)
+    call store%put('displacement', self%displacement)
+    call store%put('velocity', self%velocity)
+    call store%put('stress', self%stress)
+    if (allocated(self%gradient)) call store%put('gradient', self%gradient)
+    if (allocated(self%load)) call store%put('load', self%load)
+    if (allocated(self%affine)) call store%put('affine', self%affine)
+    if (allocated(self%reference_volume)) then
+      call store%put('reference_volume', self%reference_volume)
+    end if
+    if (allocated(self%smoothed_volume)) call store%put('smoothed_volume', self%smoothed_volume)
+  end subroutine points_save
+
+  !> Take back all arrays.
+  subroutine points_restore(self, store)
+    !> The points, started.
+    class(points_t), intent(inout) :: self
+    !> Where from.
+    class(store_t), intent(inout) :: store
+    character(:), allocatable :: digest
+    integer, allocatable :: list(:)
+    integer :: n
+
+    call store%get('digest', digest)
+    n = self%n
+    call store%get('n', n)
+    if (.not. allocated(store%failure) .and. (n /= self%n .or. digest /= self%digest)) then
+      call raise(store%failure, err_input, 'the points are not those of the run that was saved', &
+                 file=self%file, hint='the points file has changed since, or point-file or &
+                 &point-class name another one')
+    end if
+    call store%get('n_inside', self%n_inside)
+    call store%get('n_lost', self%n_lost)
+    call store%get('n_changed', self%n_changed)
+    call store%get('n_drifted', self%n_drifted)
+    call store%get_fixed('lo', self%lo)
+    call store%get_fixed('hi', self%hi)
+    call store%get('mass_cutoff', self%mass_cutoff)
+    call store%get('id', self%id)
+    call store%get('key', self%key)
+    call store%get('order', list)
+    if (allocated(store%failure)) return
+    self%order(:self%n_inside) = list
+    if (store%has('row_offset')) then
+      call store%get('row_offset', list)
+      if (allocated(store%failure)) return
+      if (allocated(self%row_offset)) deallocate (self%row_offset)
+      allocate (self%row_offset(0:size(list) - 1))
+      self%row_offset(:) = list
+    end if
+    call store%get('mass', self%mass)
+    call store%get('volume', self%volume)
+    call store%get('extent', self%extent)
+    call store%get('x', self%x)
+    call store%get('displacement', self%displacement)
+    call store%get('velocity', self%velocity)
+    call store%get('stress', self%stress)
+    if (store%has('gradient')) call store%get('gradient', self%gradient)
+    if (store%has('load')) call store%get('load', self%load)
+    if (store%has('affine')) call store%get('affine', self%affine)
+    if (store%has('reference_volume')) then
+      call store%get('reference_volume', self%reference_volume)
+    end if
+    if (store%has('smoothed_volume')) call store%get('smoothed_volume', self%smoothed_volume)
+  end subroutine points_restore
 
 end module mpm_points

@@ -1,13 +1,15 @@
 !> The role `serializer`: when frames are due and how they are written.
 module mpm_serializer
   use mpm_configurable, only: configurable_t
+  use mpm_description, only: description_t
   use mpm_errors, only: error_t
   use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
   use mpm_properties, only: properties_t
+  use mpm_store, only: store_t
   implicit none
   private
-  public :: serializer_t
+  public :: add_save_properties, serializer_restore, serializer_save, serializer_t
 
   !> A writer of frames.
   type, abstract, extends(configurable_t) :: serializer_t
@@ -17,6 +19,23 @@ module mpm_serializer
     integer :: frames = 0
     !> Bytes written so far.
     integer(lp) :: bytes = 0
+    !> Frames that a run at the present rate would have written beyond `frames`, when the rate was
+    !! changed at a restart.
+    integer :: skipped = 0
+    !> Folder of checkpoints; empty for none.
+    character(:), allocatable :: save_folder
+    !> Start of their names.
+    character(:), allocatable :: save_name
+    !> Wall time between two checkpoints; 0 for none by wall time. [s]
+    real(wp) :: save_wall = 0.0_wp
+    !> Simulated time between two checkpoints; 0 for none by simulated time. [s]
+    real(wp) :: save_time = 0.0_wp
+    !> Save at the stop time.
+    logical :: save_at_end = .false.
+    !> Save when a signal asks to stop or to save.
+    logical :: save_on_signal = .true.
+    !> Rate of the run that was saved. [1/s]
+    real(wp), private :: saved_rate = 0.0_wp
   contains
     !> Set up from the properties; nothing is written.
     procedure(init_i), deferred :: init
@@ -26,10 +45,20 @@ module mpm_serializer
     procedure(open_i), deferred :: open
     !> Write the state as the next frame.
     procedure(write_frame_i), deferred :: write_frame
+    !> Whether there is a folder for checkpoints.
+    procedure :: can_save => serializer_can_save
+    !> Take when to save from the properties.
+    procedure :: init_saving => serializer_init_saving
     !> Where the frames go, for people.
     procedure(destination_i), deferred :: destination
     !> Whether a frame is due at a time.
     procedure :: due => serializer_due
+    !> Time of the next frame.
+    procedure :: next_time => serializer_next_time
+    procedure :: save => serializer_save
+    procedure :: restore => serializer_restore
+    !> Go on at a rate that was changed.
+    procedure :: resume => serializer_resume
   end type serializer_t
 
   abstract interface
@@ -82,6 +111,58 @@ module mpm_serializer
 
 contains
 
+  !> Add the properties that say when and where to save.
+  subroutine add_save_properties(description)
+    !> The description.
+    type(description_t), intent(inout) :: description
+
+    call description%add_real('save_wall', 's', 'wall time between two checkpoints; 0: none by &
+                              &wall time', default=0.0_wp, lower=0.0_wp)
+    call description%add_real('save_time', 's', 'simulated time between two checkpoints, written &
+                              &at the end of the step that reaches it; 0: none by simulated time', &
+                              default=0.0_wp, lower=0.0_wp)
+    call description%add_integer('save_at_end', '1: write a checkpoint at the stop time', &
+                                 default=0, lower=0, upper=1)
+    call description%add_integer('save_on_signal', '1: write a checkpoint upon SIGINT, SIGTERM &
+                                 &(which end the run) and SIGUSR1 (which does not)', default=1, &
+                                 lower=0, upper=1)
+    call description%add_note('Checkpoints are <save_folder>/<run_name>.<step>.h5; the last two &
+                              &are kept. mpm3d -r FILE goes on from one.')
+  end subroutine add_save_properties
+
+  !> Take when and where to save from the properties.
+  subroutine serializer_init_saving(self, properties)
+    !> The serializer.
+    class(serializer_t), intent(inout) :: self
+    !> Checked properties, those of `add_save_properties`, `save_folder` and `run_name` among them.
+    type(properties_t), intent(in) :: properties
+    integer :: i
+
+    self%save_folder = properties%string('save_folder')
+    self%save_name = properties%string('run_name')
+    self%save_name = trim(self%save_name(:min(len(self%save_name), 160)))
+    do i = 1, len(self%save_name)
+      if (iachar(self%save_name(i:i)) < iachar(' ')) self%save_name(i:i) = '_'
+      if (self%save_name(i:i) == '/') self%save_name(i:i) = '_'
+    end do
+    if (len(self%save_name) == 0) self%save_name = 'mpm3d'
+    self%save_wall = properties%real('save_wall')
+    self%save_time = properties%real('save_time')
+    self%save_at_end = properties%integer('save_at_end') == 1
+    self%save_on_signal = properties%integer('save_on_signal') == 1
+  end subroutine serializer_init_saving
+
+  !> Whether there is a folder for checkpoints.
+  pure function serializer_can_save(self) result(can_save)
+    !> The serializer.
+    class(serializer_t), intent(in) :: self
+    !> False when the config names none.
+    logical :: can_save
+
+    can_save = allocated(self%save_folder)
+    if (can_save) can_save = len_trim(self%save_folder) > 0
+  end function serializer_can_save
+
   !> Most serializers take any model.
   subroutine serializer_check(self, model, error)
     !> The serializer.
@@ -111,7 +192,60 @@ contains
     if (due .or. .not. self%rate > 0.0_wp) return
     ! A frame time that a step reaches up to rounding must not wait for the next step.
     slack = 1.0e-6_wp*min(model%dt, time - model%time)
-    due = time - model%t_start >= real(self%frames, wp)/self%rate - slack
+    due = time - model%t_start >= real(self%frames + self%skipped, wp)/self%rate - slack
   end function serializer_due
+
+  !> Time of the next frame, for a rate above 0.
+  pure function serializer_next_time(self, model) result(time)
+    !> The serializer.
+    class(serializer_t), intent(in) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The time. [s]
+    real(wp) :: time
+
+    time = model%t_start + real(self%frames + self%skipped, wp)/self%rate
+  end function serializer_next_time
+
+  !> Save what is known of the frames so far.
+  !!
+  !! Public since a class that overrides it can't call it by the name of an abstract parent.
+  subroutine serializer_save(self, store)
+    !> The serializer.
+    class(serializer_t), intent(in) :: self
+    !> Where to.
+    class(store_t), intent(inout) :: store
+
+    call store%put('rate', self%rate)
+    call store%put('frames', self%frames)
+    call store%put('skipped', self%skipped)
+    call store%put('bytes', self%bytes)
+  end subroutine serializer_save
+
+  !> Take back what is known of the frames so far.
+  subroutine serializer_restore(self, store)
+    !> The serializer.
+    class(serializer_t), intent(inout) :: self
+    !> Where from.
+    class(store_t), intent(inout) :: store
+
+    call store%get('rate', self%saved_rate)
+    call store%get('frames', self%frames)
+    call store%get('skipped', self%skipped)
+    call store%get('bytes', self%bytes)
+  end subroutine serializer_restore
+
+  !> Go on at a rate that was changed: with the first frame that is due after the present time.
+  subroutine serializer_resume(self, model)
+    !> The serializer, restored.
+    class(serializer_t), intent(inout) :: self
+    !> The model, restored.
+    type(model_t), intent(in) :: model
+    real(wp) :: passed
+
+    if (.not. self%rate > 0.0_wp .or. .not. abs(self%rate - self%saved_rate) > 0.0_wp) return
+    passed = (model%time - model%t_start)*self%rate + 1.0e-6_wp
+    self%skipped = int(min(passed, 1.0e9_wp)) + 1 - self%frames
+  end subroutine serializer_resume
 
 end module mpm_serializer

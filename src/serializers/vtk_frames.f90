@@ -4,6 +4,7 @@ module mpm_vtk_frames
   use mpm_description, only: description_t
   use mpm_errors, only: err_input, error_t, raise
   use mpm_field_writer, only: field_writer_t
+  use mpm_file_system, only: delete_leftovers
   use mpm_files, only: delete_file, join_path, make_directories
   use mpm_kinds, only: lp, wp
   use mpm_memory, only: available_memory
@@ -11,7 +12,7 @@ module mpm_vtk_frames
   use mpm_number_parser, only: parse_real
   use mpm_number_text, only: default_digits
   use mpm_properties, only: properties_t
-  use mpm_serializer, only: serializer_t
+  use mpm_serializer, only: add_save_properties, serializer_t
   use mpm_strings, only: string_t, to_text
   use mpm_text_writer, only: text_writer_t
   use mpm_vtk_node_fields, only: vtk_node_fields_t
@@ -93,10 +94,11 @@ contains
                                  default=default_digits, lower=9, upper=17)
     call description%add_string('frame_folder', 'folder of the frames, relative to the working &
                                 &directory; made when missing')
-    call description%add_string('save_folder', 'folder of checkpoints; this class writes none and &
-                                &does not use it')
-    call description%add_string('run_name', 'name of the run, for the title line of the files; may &
-                                &be empty')
+    call description%add_string('save_folder', 'folder of checkpoints, relative to the working &
+                                &directory; made when needed; empty: no checkpoints')
+    call description%add_string('run_name', 'name of the run, for the title line of the files and &
+                                &the names of checkpoints; may be empty')
+    call add_save_properties(description)
     call description%add_note('A frame is two files a body: fpd.<id>.<name>.<frame>.vtk has its &
                               &points, in the order of the points file, &
                               &fnd.<id>.<name>.<frame>.vtk the whole grid, 0 where the body has no &
@@ -119,6 +121,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     self%rate = properties%real('rate')
+    call self%init_saving(properties)
     self%digits = properties%integer('digits')
     self%folder = properties%string('frame_folder')
     self%run_name = one_line(properties%string('run_name'))
@@ -163,6 +166,8 @@ contains
 
     call make_directories(self%folder, error)
     if (allocated(error)) return
+    call delete_leftovers(self%folder, 'fpd.')
+    call delete_leftovers(self%folder, 'fnd.')
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
         call trial%open(self%path('fpd', body), error)

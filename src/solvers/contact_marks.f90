@@ -7,6 +7,7 @@
 module mpm_contact_marks
   use mpm_kinds, only: wp
   use mpm_nodes, only: nodes_t
+  use mpm_store, only: store_t
   use mpm_window, only: intersect, window_t
   implicit none
   private
@@ -30,6 +31,10 @@ module mpm_contact_marks
     procedure :: keep => marks_keep
     !> Put the kept velocities in place of others at marked nodes.
     procedure :: impose => marks_impose
+    !> Save what the next step may impose.
+    procedure :: save => marks_save
+    !> Take it back.
+    procedure :: restore => marks_restore
   end type contact_marks_t
 
 contains
@@ -95,5 +100,33 @@ contains
       end do
     end do
   end subroutine marks_impose
+
+  !> Save what the next step may impose.
+  subroutine marks_save(self, store)
+    !> The marks.
+    class(contact_marks_t), intent(in) :: self
+    !> Where to.
+    class(store_t), intent(inout) :: store
+
+    if (.not. allocated(self%touched)) return
+    call store%put('lo', self%window%lo)
+    call store%put('n', self%window%n)
+    call store%put('touched', self%touched)
+    call store%put('values', self%values)
+  end subroutine marks_save
+
+  !> Take back what the next step may impose.
+  subroutine marks_restore(self, store)
+    !> The marks.
+    class(contact_marks_t), intent(inout) :: self
+    !> Where from.
+    class(store_t), intent(inout) :: store
+
+    if (.not. store%has('touched')) return
+    call store%get_fixed('lo', self%window%lo)
+    call store%get_fixed('n', self%window%n)
+    call store%get('touched', self%touched)
+    call store%get('values', self%values)
+  end subroutine marks_restore
 
 end module mpm_contact_marks

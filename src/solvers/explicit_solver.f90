@@ -10,10 +10,13 @@ module mpm_explicit_solver
   use mpm_properties, only: properties_t
   use mpm_seam, only: copy_to_ghosts
   use mpm_solver, only: solver_t
+  use mpm_store, only: store_t
+  use mpm_strings, only: to_text
   use mpm_transfer, only: add_transfer_properties, transfer_t
   implicit none
   private
   public :: add_explicit_properties, explicit_solver_t
+  public :: explicit_solver_restore, explicit_solver_save
 
   !> Symplectic Euler steps with a choice of transfers.
   type, abstract, extends(solver_t) :: explicit_solver_t
@@ -30,6 +33,8 @@ module mpm_explicit_solver
   contains
     procedure :: init => explicit_solver_init
     procedure :: start => explicit_solver_start
+    procedure :: save => explicit_solver_save
+    procedure :: restore => explicit_solver_restore
     !> Ask for the marks of contacts.
     procedure :: mark_contacts => explicit_solver_mark_contacts
     !> Map all bodies to their nodes.
@@ -191,5 +196,43 @@ contains
       end associate
     end do
   end subroutine explicit_solver_push
+
+  !> Save the marks of contacts, which the next step may use.
+  !!
+  !! Public since a class that overrides it can't call it by the name of an abstract parent.
+  subroutine explicit_solver_save(self, store)
+    !> The solver.
+    class(explicit_solver_t), intent(in) :: self
+    !> Where to.
+    class(store_t), intent(inout) :: store
+    integer :: i
+
+    if (.not. allocated(self%marks)) return
+    call store%put('marks', size(self%marks))
+    do i = 1, size(self%marks)
+      call store%enter('marks_'//to_text(i))
+      call self%marks(i)%save(store)
+      call store%leave()
+    end do
+  end subroutine explicit_solver_save
+
+  !> Take back the marks of contacts.
+  subroutine explicit_solver_restore(self, store)
+    !> The solver, started.
+    class(explicit_solver_t), intent(inout) :: self
+    !> Where from.
+    class(store_t), intent(inout) :: store
+    integer :: n, i
+
+    if (.not. store%has('marks')) return
+    n = 0
+    call store%get('marks', n)
+    allocate (self%marks(n))
+    do i = 1, n
+      call store%enter('marks_'//to_text(i))
+      call self%marks(i)%restore(store)
+      call store%leave()
+    end do
+  end subroutine explicit_solver_restore
 
 end module mpm_explicit_solver

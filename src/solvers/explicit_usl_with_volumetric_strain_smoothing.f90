@@ -4,8 +4,10 @@ module mpm_explicit_usl_with_volumetric_strain_smoothing
   use mpm_body, only: body_t
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
+  use mpm_explicit_solver, only: explicit_solver_restore, explicit_solver_save
   use mpm_explicit_steps, only: advance_stress, bad_stress, raise_bad_point, update_points
   use mpm_explicit_usl, only: explicit_usl_step, explicit_usl_t
+  use mpm_file_system, only: file_size, truncate_file
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t, type_plane_strain
   use mpm_material, only: material_t
@@ -13,6 +15,7 @@ module mpm_explicit_usl_with_volumetric_strain_smoothing
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
   use mpm_stencil, only: block_size
+  use mpm_store, only: store_t
   use mpm_strings, only: excerpt, nearest_name, string_t
   use mpm_threads, only: useful_threads
   use mpm_volume_metrics, only: write_volume_metrics
@@ -40,6 +43,8 @@ module mpm_explicit_usl_with_volumetric_strain_smoothing
     integer :: n_cells(2) = 0
     !> Lines of metrics written so far.
     integer, private :: lines = 0
+    !> Bytes of the file of metrics to go on behind; negative for all that it has.
+    integer(lp), private :: kept_bytes = -1
     !> The properties, until the TYPE is known.
     type(properties_t), private :: properties
   contains
@@ -47,6 +52,8 @@ module mpm_explicit_usl_with_volumetric_strain_smoothing
     procedure :: init => strain_smoothing_init
     procedure :: start => strain_smoothing_start
     procedure :: step => strain_smoothing_step
+    procedure :: save => strain_smoothing_save
+    procedure :: restore => strain_smoothing_restore
     procedure :: advance_body => strain_smoothing_advance_body
     procedure, private :: read_flags
     procedure, private :: smooth
@@ -236,9 +243,40 @@ contains
     call explicit_usl_step(self, model, dt, keep_gradient, error)
     if (allocated(error) .or. len(self%metrics_file) == 0) return
     if (mod(model%step + 1, int(self%stride, lp)) /= 0) return
+    if (self%kept_bytes >= 0) call truncate_file(self%metrics_file, self%kept_bytes, error)
+    if (allocated(error)) return
+    self%kept_bytes = -1
     call write_volume_metrics(model, model%time + dt, self%metrics_file, self%lines == 0, error)
     self%lines = 1
   end subroutine strain_smoothing_step
+
+  !> Save how much of the metrics is written.
+  subroutine strain_smoothing_save(self, store)
+    !> The solver.
+    class(explicit_usl_with_volumetric_strain_smoothing_t), intent(in) :: self
+    !> Where to.
+    class(store_t), intent(inout) :: store
+
+    call explicit_solver_save(self, store)
+    if (len(self%metrics_file) == 0) return
+    call store%put('lines', self%lines)
+    call store%put('metrics_bytes', file_size(self%metrics_file))
+  end subroutine strain_smoothing_save
+
+  !> Take back how much of the metrics is written: lines behind that are dropped.
+  subroutine strain_smoothing_restore(self, store)
+    !> The solver, started.
+    class(explicit_usl_with_volumetric_strain_smoothing_t), intent(inout) :: self
+    !> Where from.
+    class(store_t), intent(inout) :: store
+
+    call explicit_solver_restore(self, store)
+    if (.not. store%has('metrics_bytes')) return
+    if (len(self%metrics_file) == 0) return
+    call store%get('lines', self%lines)
+    call store%get('metrics_bytes', self%kept_bytes)
+    if (file_size(self%metrics_file) == 0) self%lines = 0
+  end subroutine strain_smoothing_restore
 
   !> Advance the points of a body, smooth their volumes, then advance their stress.
   subroutine strain_smoothing_advance_body(self, model, body, dt, keep_gradient, error)

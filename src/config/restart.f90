@@ -1,0 +1,68 @@
+!> From a checkpoint to a job that goes on from there.
+module mpm_restart
+  use mpm_checkpoint_file, only: checkpoint_file_t
+  use mpm_configurator, only: configure
+  use mpm_errors, only: error_t
+  use mpm_job, only: job_t
+  use mpm_monitor, only: monitor_t
+  use mpm_state, only: restore_state
+  use mpm_strings, only: string_t, to_text
+  implicit none
+  private
+  public :: restart
+
+contains
+
+  !> Configure and start a job as it was, and take back the state of the run.
+  !!
+  !! Nothing is written.
+  subroutine restart(path, overrides, threads, job, monitor, error)
+    !> The checkpoint.
+    character(*), intent(in) :: path
+    !> What to change, as texts of `--set`.
+    type(string_t), intent(in) :: overrides(:)
+    !> Number of threads; 0 for that of the config.
+    integer, intent(in) :: threads
+    !> The job, started.
+    type(job_t), intent(out) :: job
+    !> What is told of the run.
+    class(monitor_t), intent(inout) :: monitor
+    !> A checkpoint or points that are not what they should be.
+    type(error_t), allocatable, intent(out) :: error
+    type(checkpoint_file_t), allocatable :: file
+    character(:), allocatable :: config, text, program
+    type(string_t), allocatable :: all(:)
+    integer :: n, i
+
+    allocate (file)
+    call file%read(path, error)
+    if (allocated(error)) return
+    n = 0
+    call file%get('program', program)
+    call file%get('config', config)
+    call file%get('text', text)
+    call file%get('overrides', n)
+    allocate (all(n + size(overrides)))
+    do i = 1, n
+      call file%get('override_'//to_text(i), all(i)%text)
+    end do
+    do i = 1, size(overrides)
+      all(n + i)%text = overrides(i)%text
+    end do
+    if (.not. allocated(file%failure)) then
+      call configure(config, all, job, error, text)
+      if (.not. allocated(error)) then
+        if (threads > 0) job%model%threads = threads
+        call job%start(error)
+      end if
+      if (.not. allocated(error)) then
+        call restore_state(file, job%model, job%driver, job%solver, job%serializer, monitor)
+        job%goes_on = .true.
+        call monitor%say('restart: '//path//', saved by '//program)
+      end if
+    end if
+    if (allocated(file%failure)) allocate (error, source=file%failure)
+    call file%close()
+  end subroutine restart
+
+end module mpm_restart

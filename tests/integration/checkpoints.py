@@ -1,0 +1,133 @@
+"""A scene that any class can be part of, for the tests of checkpoints.
+
+Two bodies that collide and a third one, under gravity, in TYPE 2. A class takes its place in it by
+the example that it gives of itself.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+from scene import Run, block, huang, write_points
+
+DT = 1e-3
+STEPS = 60
+#: Steps between two frames.
+FRAME = 10
+#: Step of the checkpoint: one without a frame, after several with contact.
+SAVED = 34
+T_START = -0.02
+T_STOP = T_START + STEPS * DT
+RATE = 1.0 / (FRAME * DT)
+NAME = "test"
+
+SECTIONS = {
+    "serializer": """serializer
+{
+    class = "DefaultVTK"
+    properties = {60}
+    str-properties = {"output", "save", "test"}
+}""",
+    "driver": 'driver { class = "DefaultDriver" properties = {1} }',
+    "solver": 'solver { class = "ExplicitUSL" }',
+    "grid": """grid
+{
+    class = "CartesianLinear"
+    properties = {1, 1}
+    int-properties = {20, 20}
+}""",
+    "contact": huang("block_0", "block_1"),
+}
+PARTS = {
+    "points": '    point-class = "DefaultPoints"\n    point-file = "NAME.points"',
+    "nodes": '    node-class = "DefaultNodes"',
+    "material": '    material-class = "IsotropicLinearElasticity"\n    material-props = {1e5, 0.3}',
+    "boundary": '    boundary-class = "CartesianBox"',
+}
+LATTICE = "Lx = {1, 1}\nNx = {20, 20}\nlmpp = 2\nrho = 1000\n"
+BODIES = {
+    # Enough points that two threads share the work.
+    "block_0": ([0.2, 0.2], [0.4, 0.4], [68, 64], [0.5, -0.4]),
+    "block_1": ([0.42, 0.22], [0.6, 0.4], [12, 12], [-0.5, -0.4]),
+    "projectile": ([0.3, 0.7], [0.4, 0.8], [6, 6], [0.1, 0.2]),
+}
+
+
+@dataclass
+class Class:
+    """A registered class."""
+
+    role: str
+    name: str
+    #: Lines of a config, with all that the class shows of itself.
+    example: str
+
+
+def registered(run: Run, folder: Path) -> list[Class]:
+    """Return all classes of the program but shapes, which are gone when a run begins."""
+    listed = run("--list", cwd=folder)
+    assert listed.returncode == 0
+    found, role = [], ""
+    for line in listed.stdout.splitlines():
+        if not line.startswith(" "):
+            role = line.strip()
+        elif role != "part":
+            name = line.split()[0]
+            described = run("--describe", name, cwd=folder)
+            assert described.returncode == 0
+            found.append(Class(role, name, described.stdout.partition("\nexample\n")[2]))
+    return found
+
+
+def set_first(section: str, values: str) -> str:
+    """Replace the first of the properties of a section."""
+    changed, n = re.subn(r"(\n *properties = \{) *[^,}]*", rf"\g<1>{values}", section, count=1)
+    if n == 0:
+        changed, n = re.subn(r"( properties = \{) *[^,}]*", rf"\g<1>{values}", section, count=1)
+    assert n == 1, section
+    return changed
+
+
+def write_scene(folder: Path, role: str = "", example: str = "", **saving: float) -> None:
+    """Write a config with an example in its place, and the points files."""
+    sections, parts, first = dict(SECTIONS), dict(PARTS), ""
+    if role in sections:
+        sections[role] = example
+    elif role in parts:
+        parts[role], _, text = example.partition("# block.parts\n")
+        box = 'part { class = "Box" properties = {0.2, 0.2, 0.4, 0.4} }\n'
+        (folder / "block.parts").write_text(text or LATTICE + box)
+    elif role == "body":
+        first = example
+    else:
+        assert role == ""
+    named = "".join(f", {key} = {value!r}" for key, value in saving.items())
+    sections["serializer"] = set_first(sections["serializer"], repr(RATE) + named)
+    sections["driver"] = set_first(sections["driver"], repr(T_STOP))
+    bodies = []
+    for name, (lower, upper, counts, velocity) in BODIES.items():
+        # What takes the place of points is for the first body only.
+        chosen = {**parts, "points": parts["points"] if name == "block_0" else PARTS["points"]}
+        text = "\n".join(chosen.values()).replace("NAME", name)
+        bodies.append(f'body\n{{\n    class = "DefaultBody"\n    name = "{name}"\n{text}\n}}')
+        write_points(folder / f"{name}.points", block(2, lower, upper, counts, velocity=velocity))
+    shutil.copy(folder / "block_0.points", folder / "block.points")
+    if first:
+        bodies[0] = first
+    contact = sections.pop("contact")
+    job = f"job {{ t = {T_START!r} dt = {DT!r} TYPE = 2 }}"
+    config = "\n".join([job, *sections.values(), *bodies, contact]) + "\n"
+    (folder / "scene.cfg").write_text(config)
+
+
+def checkpoint(step: int, folder: str = "save", name: str = NAME) -> str:
+    """Return the path of a checkpoint."""
+    return f"{folder}/{name}.{step:012d}.h5"
+
+
+def files_of(folder: Path) -> dict[str, bytes]:
+    """Return the content of all files of a folder by their names."""
+    return {path.name: path.read_bytes() for path in sorted(folder.iterdir()) if path.is_file()}
