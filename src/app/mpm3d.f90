@@ -1,9 +1,10 @@
 !> The program: reads the command line, runs a job, turns errors into messages and exit codes.
 program mpm3d
   use, intrinsic :: iso_c_binding, only: c_int
-  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use mpm_build_info, only: build_type, compiler, revision, version
   use mpm_command_line, only: command_line_t, read_command_line, usage
+  use mpm_console, only: finish_output, put_line
   use mpm_configurator, only: configure
   use mpm_describe_text, only: describe_text, list_line
   use mpm_description, only: description_t
@@ -18,8 +19,10 @@ program mpm3d
   implicit none
 
   interface
-    !> C `exit`: end the program with a status that is not known at compile time.
-    subroutine c_exit(status) bind(c, name='exit')
+    !> POSIX `_exit`: end the program with a status that is not known at compile time.
+    !!
+    !! Not `exit`, since the HDF5 library crashes at the end of a program that could not close a file.
+    subroutine c_exit(status) bind(c, name='_exit')
       import :: c_int
       implicit none
       !> Exit status.
@@ -28,13 +31,15 @@ program mpm3d
   end interface
 
   type(command_line_t) :: command
-  type(error_t), allocatable :: error
+  type(error_t), allocatable :: error, lost
 
   call read_command_line(command, error)
   if (.not. allocated(error)) call act(command, error)
-  flush (output_unit)
+  call finish_output(lost)
+  if (allocated(lost) .and. .not. allocated(error)) call move_alloc(lost, error)
   if (allocated(error)) then
     write (error_unit, '(a)') error%text()
+    flush (error_unit)
     call c_exit(int(error%code, c_int))
   end if
 
@@ -49,10 +54,9 @@ contains
 
     select case (command%action)
     case ('help')
-      write (output_unit, '(a)') usage()
+      call put_line(usage())
     case ('version')
-      write (output_unit, '(a)') 'mpm3d '//version//' ('//revision//', '//compiler//', '// &
-        build_type//')'
+      call put_line('mpm3d '//version//' ('//revision//', '//compiler//', '//build_type//')')
     case ('list')
       call list_classes(command%subject, error)
     case ('describe')
@@ -112,9 +116,9 @@ contains
         error%code = err_usage
         return
       end if
-      write (output_unit, '(a)') roles(i)%text
+      call put_line(roles(i)%text)
       do j = 1, size(descriptions)
-        write (output_unit, '(a)') list_line(descriptions(j))
+        call put_line(list_line(descriptions(j)))
       end do
     end do
   end subroutine list_classes
@@ -137,7 +141,7 @@ contains
       if (allocated(error)) return
       do j = 1, size(descriptions)
         if (descriptions(j)%name == name) then
-          write (output_unit, '(a)') describe_text(descriptions(j))
+          call put_line(describe_text(descriptions(j)))
           return
         end if
         call append_text(known, descriptions(j)%name)

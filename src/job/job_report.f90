@@ -1,6 +1,6 @@
 !> What a job is about to do, for people.
 module mpm_job_report
-  use, intrinsic :: iso_fortran_env, only: output_unit
+  use mpm_console, only: put_line
   use mpm_job, only: job_t
   use mpm_kinds, only: lp, wp
   use mpm_strings, only: counted, to_text
@@ -94,7 +94,7 @@ contains
     !> The line.
     character(*), intent(in) :: text
 
-    write (output_unit, '(a)') text
+    call put_line(text)
   end subroutine line
 
   !> Counts as `20 x 30`.

@@ -1,7 +1,9 @@
 !> What the program tells of a run: summaries at its start and end, progress, warnings.
 module mpm_monitor
-  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  use mpm_console, only: finish_output, put_line, put_now
   use mpm_energy, only: energy_t, measure
+  use mpm_errors, only: error_t
   use mpm_files, only: is_terminal
   use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
@@ -191,12 +193,10 @@ contains
     speed = real(model%step - self%first_step, wp)/seconds
     part = (model%time - self%first_time)/(t_stop - self%first_time)
     done = (model%time - model%t_start)/(t_stop - model%t_start)
-    write (output_unit, '(a)', advance='no') start_of_line//'t = '// &
-      to_text(model%time, 4)//' s   '// &
+    call put_now(start_of_line//'t = '//to_text(model%time, 4)//' s   '// &
       to_text(int(100.0_wp*done))//' %   frames '//to_text(frames)//'   '// &
       to_text(speed, 3)//' steps/s   left '// &
-      duration(anint(seconds*(1.0_wp - part)/part))//erase_line
-    flush (output_unit)
+      duration(anint(seconds*(1.0_wp - part)/part))//erase_line)
   end subroutine monitor_progress
 
   !> End of the run: cost, momentum and energy.
@@ -281,7 +281,7 @@ contains
     !> The line.
     character(*), intent(in) :: text
 
-    if (self%verbosity >= normal) write (output_unit, '(a)') text
+    if (self%verbosity >= normal) call put_line(text)
   end subroutine monitor_say
 
   !> Write a warning.
@@ -290,9 +290,11 @@ contains
     class(monitor_t), intent(in) :: self
     !> What to warn of.
     character(*), intent(in) :: text
+    type(error_t), allocatable :: ignored
 
     call self%clear_line()
-    flush (output_unit)
+    ! Whether it fails is asked at the end of the program.
+    call finish_output(ignored)
     write (error_unit, '(a)') 'warning: '//text
   end subroutine monitor_warn
 
@@ -301,7 +303,7 @@ contains
     !> The monitor.
     class(monitor_t), intent(in) :: self
 
-    if (self%shows_progress) write (output_unit, '(a)', advance='no') start_of_line//erase_line
+    if (self%shows_progress) call put_now(start_of_line//erase_line)
   end subroutine monitor_clear_line
 
   !> Seconds since the start of the loop.

@@ -4,6 +4,7 @@ module mpm_vtk_frames
   use mpm_description, only: description_t
   use mpm_errors, only: err_input, error_t, raise
   use mpm_field_writer, only: field_writer_t
+  use mpm_file_system, only: delete_leftovers
   use mpm_files, only: delete_file, join_path, make_directories
   use mpm_kinds, only: lp, wp
   use mpm_memory, only: available_memory
@@ -165,6 +166,8 @@ contains
 
     call make_directories(self%folder, error)
     if (allocated(error)) return
+    call delete_leftovers(self%folder, 'fpd.')
+    call delete_leftovers(self%folder, 'fnd.')
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
         call trial%open(self%path('fpd', body), error)

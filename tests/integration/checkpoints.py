@@ -22,14 +22,14 @@ SAVED = 34
 T_START = -0.02
 T_STOP = T_START + STEPS * DT
 RATE = 1.0 / (FRAME * DT)
-NAME = "run"
+NAME = "test"
 
 SECTIONS = {
     "serializer": """serializer
 {
     class = "DefaultVTK"
     properties = {60}
-    str-properties = {"output", "save", "run"}
+    str-properties = {"output", "save", "test"}
 }""",
     "driver": 'driver { class = "DefaultDriver" properties = {1} }',
     "solver": 'solver { class = "ExplicitUSL" }',
