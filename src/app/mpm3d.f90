@@ -10,7 +10,8 @@ program mpm3d
   use mpm_errors, only: err_usage, error_t, raise
   use mpm_job, only: job_t
   use mpm_job_report, only: report_job
-  use mpm_monitor, only: monitor_t, quiet
+  use mpm_monitor, only: monitor_t, quiet, verbose
+  use mpm_phase_clock, only: phase_clock_t, phase_setup
   use mpm_registry, only: describe_classes, role_names
   use mpm_strings, only: append_text, excerpt, nearest_name, string_t
   implicit none
@@ -68,11 +69,14 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(job_t), allocatable :: job
     type(monitor_t) :: monitor
+    type(phase_clock_t) :: clock
 
     allocate (job)
+    if (command%verbosity >= verbose) call clock%start(phase_setup)
     monitor%verbosity = command%verbosity
     call configure(command%config, command%overrides, job, error)
     if (allocated(error)) return
+    job%model%clock = clock
     if (command%threads > 0) job%model%threads = command%threads
     call job%start(error)
     if (allocated(error)) return
