@@ -11,7 +11,8 @@ program mpm3d
   use mpm_errors, only: err_usage, error_t, raise
   use mpm_job, only: job_t
   use mpm_job_report, only: report_job
-  use mpm_monitor, only: monitor_t, quiet
+  use mpm_monitor, only: monitor_t, quiet, verbose
+  use mpm_phase_clock, only: phase_clock_t, phase_setup
   use mpm_registry, only: describe_classes, role_names
   use mpm_restart, only: restart
   use mpm_signals, only: ignore_file_limit, watch_signals
@@ -74,15 +75,19 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(job_t), allocatable :: job
     type(monitor_t) :: monitor
+    type(phase_clock_t) :: clock
 
     allocate (job)
+    if (command%verbosity >= verbose) call clock%start(phase_setup)
     monitor%verbosity = command%verbosity
     if (len(command%checkpoint) > 0) then
       call restart(command%checkpoint, command%overrides, command%threads, job, monitor, error)
       if (allocated(error)) return
+      job%model%clock = clock
     else
       call configure(command%config, command%overrides, job, error)
       if (allocated(error)) return
+      job%model%clock = clock
       if (command%threads > 0) job%model%threads = command%threads
       call job%start(error)
       if (allocated(error)) return

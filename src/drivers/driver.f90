@@ -7,6 +7,7 @@ module mpm_driver
   use mpm_kinematics, only: kinematics_t, type_1d, type_3d
   use mpm_model, only: model_t
   use mpm_monitor, only: monitor_t
+  use mpm_phase_clock, only: phase_other, phase_output
   use mpm_properties, only: properties_t
   use mpm_serializer, only: serializer_t
   use mpm_solver, only: solver_t
@@ -199,10 +200,12 @@ contains
     call self%plan(model, solver, steps, exact)
     call monitor%begin(model, solver, steps, exact)
     if (serializer%frames == 0) then
+      call model%clock%enter(phase_output)
       call serializer%write_frame(model, error)
       if (allocated(error)) return
       call monitor%frame(model, serializer%frames)
     end if
+    call model%clock%enter(phase_other)
     do
       call self%next_step(model, solver, serializer, dt, t_next, error)
       if (allocated(error)) exit
@@ -211,14 +214,17 @@ contains
       frame = serializer%due(model, t_next)
       call solver%step(model, dt, frame, error)
       if (allocated(error)) exit
+      call model%clock%enter(phase_other)
       model%step = model%step + 1
       model%time = t_next
       model%last_dt = dt
       if (frame) then
+        call model%clock%enter(phase_output)
         call monitor%check(model, solver)
         call serializer%write_frame(model, error)
         if (allocated(error)) exit
         call monitor%frame(model, serializer%frames)
+        call model%clock%enter(phase_other)
       end if
       call monitor%progress(model, self%t_stop, serializer%frames)
       if (.not. present(keeper)) cycle
@@ -228,6 +234,7 @@ contains
     if (present(keeper) .and. .not. allocated(error)) then
       call keeper%look(model, self, solver, serializer, monitor, .true., error)
     end if
+    call model%clock%enter(phase_other)
     if (allocated(error)) then
       call monitor%clear_line()
     else

@@ -1,5 +1,8 @@
 !> Text files that are whole or absent: buffered, written under another name, renamed at the end.
+!!
+!! Numbers can also be put as bytes, the highest first.
 module mpm_text_writer
+  use, intrinsic :: iso_fortran_env, only: int32, int64
   use mpm_errors, only: err_io, error_t, raise
   use mpm_files, only: delete_file, process_id, reason_against, rename_file
   use mpm_kinds, only: lp, wp
@@ -11,6 +14,10 @@ module mpm_text_writer
 
   !> Bytes gathered for one write to the file.
   integer, parameter :: buffer_size = 1024*1024
+  !> Numbers that are put as bytes at a time.
+  integer, parameter :: byte_block = 512
+  !> Whether this machine stores the lowest byte of a number first.
+  logical, parameter :: low_byte_first = iachar(transfer(1_int32, 'a')) == 1
 
   !> A text file on its way.
   !!
@@ -47,6 +54,10 @@ module mpm_text_writer
     procedure :: put_real
     !> Write many reals, some on each line.
     procedure :: put_reals
+    !> Write reals as 8 bytes each.
+    procedure :: put_real_bytes
+    !> Write integers as 4 bytes each.
+    procedure :: put_integer_bytes
     !> Write a default or long integer.
     generic :: put_integer => put_default_integer, put_long_integer
     !> Finish the file and give it its name.
@@ -154,6 +165,56 @@ contains
       end if
     end do
   end subroutine put_reals
+
+  !> Write reals as 8 bytes each, the highest first.
+  subroutine put_real_bytes(self, numbers)
+    !> The writer.
+    class(text_writer_t), intent(inout) :: self
+    !> The numbers.
+    real(wp), intent(in) :: numbers(:)
+    integer(int64), parameter :: bytes = int(z'00FF00FF00FF00FF', int64)
+    integer(int64), parameter :: pairs = int(z'0000FFFF0000FFFF', int64)
+    integer(int64) :: bits(byte_block)
+    integer :: first, n
+
+    do first = 1, size(numbers), byte_block
+      n = min(byte_block, size(numbers) - first + 1)
+      bits(:n) = transfer(numbers(first:first + n - 1), bits, n)
+      if (low_byte_first) then
+        bits(:n) = ior(ishft(iand(bits(:n), bytes), 8), iand(ishft(bits(:n), -8), bytes))
+        bits(:n) = ior(ishft(iand(bits(:n), pairs), 16), iand(ishft(bits(:n), -16), pairs))
+        bits(:n) = ishftc(bits(:n), 32)
+      end if
+      call self%make_room(8*n)
+      self%buffer(self%length + 1:self%length + 8*n) = &
+        transfer(bits(:n), self%buffer(self%length + 1:self%length + 8*n))
+      self%length = self%length + 8*n
+    end do
+  end subroutine put_real_bytes
+
+  !> Write integers as 4 bytes each, the highest first.
+  subroutine put_integer_bytes(self, numbers)
+    !> The writer.
+    class(text_writer_t), intent(inout) :: self
+    !> The numbers.
+    integer, intent(in) :: numbers(:)
+    integer(int32), parameter :: bytes = int(z'00FF00FF', int32)
+    integer(int32) :: bits(byte_block)
+    integer :: first, n
+
+    do first = 1, size(numbers), byte_block
+      n = min(byte_block, size(numbers) - first + 1)
+      bits(:n) = int(numbers(first:first + n - 1), int32)
+      if (low_byte_first) then
+        bits(:n) = ior(ishft(iand(bits(:n), bytes), 8), iand(ishft(bits(:n), -8), bytes))
+        bits(:n) = ishftc(bits(:n), 16)
+      end if
+      call self%make_room(4*n)
+      self%buffer(self%length + 1:self%length + 4*n) = &
+        transfer(bits(:n), self%buffer(self%length + 1:self%length + 4*n))
+      self%length = self%length + 4*n
+    end do
+  end subroutine put_integer_bytes
 
   !> Write an integer, without a blank around it.
   subroutine put_default_integer(self, number)

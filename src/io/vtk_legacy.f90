@@ -1,4 +1,5 @@
-!> The layout of legacy VTK files: ASCII, version 3.0, one unstructured grid with point data.
+!> The layout of legacy VTK files: version 3.0, one unstructured grid with point data, in text or in
+!! binary.
 !!
 !! Blocks come in the order points, cells, fields; each is started with its size and then filled by
 !! any number of `put_*` calls, so that no block is ever held as a whole.
@@ -23,6 +24,8 @@ module mpm_vtk_legacy
     type(text_writer_t) :: text
     !> Names of the fields so far.
     type(string_t), allocatable :: names(:)
+    !> Numbers as bytes instead of text.
+    logical :: binary = .false.
   contains
     !> Start a file.
     procedure :: open => vtk_legacy_open
@@ -57,12 +60,13 @@ module mpm_vtk_legacy
     !> Give up the file.
     procedure :: discard => vtk_legacy_discard
     procedure, private :: put_field_name
+    procedure, private :: put_header
   end type vtk_legacy_t
 
 contains
 
   !> Start a file.
-  subroutine vtk_legacy_open(self, path, title, digits, error)
+  subroutine vtk_legacy_open(self, path, title, digits, error, binary)
     !> The file.
     class(vtk_legacy_t), intent(inout) :: self
     !> Its name; the folder exists.
@@ -73,16 +77,32 @@ contains
     integer, intent(in) :: digits
     !> `err_io` when the file can't be written.
     type(error_t), allocatable, intent(out) :: error
+    !> Numbers as bytes, in full, instead of text; text when left out.
+    logical, intent(in), optional :: binary
 
+    self%binary = .false.
+    if (present(binary)) self%binary = binary
     call self%text%open(path, error, digits)
     if (allocated(error)) return
     if (allocated(self%names)) deallocate (self%names)
     allocate (self%names(0))
     call self%text%put_line('# vtk DataFile Version 3.0')
     call self%text%put_line(title)
-    call self%text%put_line('ASCII')
+    call self%text%put_line(trim(merge('BINARY', 'ASCII ', self%binary)))
     call self%text%put_line('DATASET UNSTRUCTURED_GRID')
   end subroutine vtk_legacy_open
+
+  !> Write the first line of a block.
+  subroutine put_header(self, line)
+    !> The file.
+    class(vtk_legacy_t), intent(inout) :: self
+    !> The line.
+    character(*), intent(in) :: line
+
+    ! Bytes do not end a line.
+    if (self%binary) call self%text%put_line()
+    call self%text%put_line(line)
+  end subroutine put_header
 
   !> Start the block of positions.
   subroutine start_points(self, n)
@@ -91,7 +111,7 @@ contains
     !> Number of points.
     integer, intent(in) :: n
 
-    call self%text%put_line('POINTS '//to_text(n)//' double')
+    call self%put_header('POINTS '//to_text(n)//' double')
   end subroutine start_points
 
   !> Write positions.
@@ -128,7 +148,7 @@ contains
     !> Nodes of a cell.
     integer, intent(in) :: nodes_per_cell
 
-    call self%text%put_line('CELLS '//to_text(n)//' '//to_text(int(n, lp)*(nodes_per_cell + 1)))
+    call self%put_header('CELLS '//to_text(n)//' '//to_text(int(n, lp)*(nodes_per_cell + 1)))
   end subroutine start_cells
 
   !> Write a cell.
@@ -139,6 +159,10 @@ contains
     integer, intent(in) :: nodes(:)
     integer :: i
 
+    if (self%binary) then
+      call self%text%put_integer_bytes([size(nodes), nodes])
+      return
+    end if
     call self%text%put_integer(size(nodes))
     do i = 1, size(nodes)
       call self%text%put_text(' ')
@@ -158,7 +182,13 @@ contains
     character(:), allocatable :: line
     integer :: i
 
-    call self%text%put_line('CELL_TYPES '//to_text(n))
+    call self%put_header('CELL_TYPES '//to_text(n))
+    if (self%binary) then
+      do i = 1, n
+        call self%text%put_integer_bytes([cell_type])
+      end do
+      return
+    end if
     line = to_text(cell_type)//new_line('a')
     do i = 1, n
       call self%text%put_text(line)
@@ -172,7 +202,7 @@ contains
     !> Number of points.
     integer, intent(in) :: n
 
-    call self%text%put_line('POINT_DATA '//to_text(n))
+    call self%put_header('POINT_DATA '//to_text(n))
   end subroutine start_fields
 
   !> Start a field of numbers.
@@ -193,7 +223,11 @@ contains
     !> Numbers. (any)
     real(wp), contiguous, intent(in) :: numbers(:)
 
-    call self%text%put_reals(numbers, 1)
+    if (self%binary) then
+      call self%text%put_real_bytes(numbers)
+    else
+      call self%text%put_reals(numbers, 1)
+    end if
   end subroutine put_scalars
 
   !> Start a field of vectors.
@@ -213,7 +247,7 @@ contains
     !> Vectors, unused components 0. (3, any)
     real(wp), contiguous, intent(in) :: vectors(:, :)
 
-    call put_triples(self%text, vectors, size(vectors))
+    call put_triples(self%text, self%binary, vectors, size(vectors))
   end subroutine put_vectors
 
   !> Start a field of tensors.
@@ -235,21 +269,31 @@ contains
     integer :: i
 
     do i = 1, size(tensors, 2)
+      if (self%binary) then
+        call self%text%put_real_bytes(tensors(:, i))
+        cycle
+      end if
       call self%text%put_reals(tensors(:, i), 3)
       call self%text%put_line()
     end do
   end subroutine put_tensors
 
   !> Write numbers, three on each line.
-  subroutine put_triples(text, numbers, n)
+  subroutine put_triples(text, binary, numbers, n)
     !> The text of the file.
     type(text_writer_t), intent(inout) :: text
+    !> Numbers as bytes.
+    logical, intent(in) :: binary
     !> Number of numbers.
     integer, intent(in) :: n
     !> The numbers.
     real(wp), intent(in) :: numbers(n)
 
-    call text%put_reals(numbers, 3)
+    if (binary) then
+      call text%put_real_bytes(numbers)
+    else
+      call text%put_reals(numbers, 3)
+    end if
   end subroutine put_triples
 
   !> Write the first line of a field; a name that is in use gets a number.
@@ -279,7 +323,7 @@ contains
     end do
     longer(size(longer))%text = unique
     call move_alloc(longer, self%names)
-    call self%text%put_line(kind//' '//unique//' '//format)
+    call self%put_header(kind//' '//unique//' '//format)
   end subroutine put_field_name
 
   !> A name as the format has it: no blanks, none of VTK's escapes, not too long.

@@ -55,8 +55,7 @@ contains
       if (exact) intervals = min(real(steps, wp), intervals)
       frames = frames + int(max(0.0_wp, intervals), lp)
     end if
-    call line('frames:  '//to_text(frames)//' in '//job%serializer%destination()// &
-              ', for the points and the nodes of each body')
+    call line('frames:  '//to_text(frames)//' in '//job%serializer%destination())
   end subroutine report_job
 
   !> A line for each body.

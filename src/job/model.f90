@@ -5,6 +5,7 @@ module mpm_model
   use mpm_grid, only: grid_t
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
+  use mpm_phase_clock, only: phase_clock_t
   implicit none
   private
   public :: model_t
@@ -36,6 +37,8 @@ module mpm_model
     type(body_slot_t), allocatable :: bodies(:)
     !> The contacts in the order of the config.
     type(contact_slot_t), allocatable :: contacts(:)
+    !> Wall time of the phases of the run.
+    type(phase_clock_t) :: clock
   end type model_t
 
 end module mpm_model

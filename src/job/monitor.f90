@@ -7,6 +7,7 @@ module mpm_monitor
   use mpm_files, only: is_terminal
   use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
+  use mpm_phase_clock, only: phase_clock_t, phase_names, phase_setup
   use mpm_serializer, only: serializer_t
   use mpm_solver, only: solver_t
   use mpm_store, only: store_t
@@ -70,6 +71,8 @@ module mpm_monitor
     procedure :: save => monitor_save
     !> Take it back.
     procedure :: restore => monitor_restore
+    !> Write the table of the phases.
+    procedure, private :: say_phases => monitor_say_phases
     !> Write a line unless quiet.
     procedure :: say => monitor_say
     !> Write a warning.
@@ -234,6 +237,7 @@ contains
     if (lost > 0) call self%say('points that left the grid: '//to_text(lost))
     call self%say('frames: '//to_text(serializer%frames)//' in '//serializer%destination()// &
                   ' ('//to_text(real(serializer%bytes, wp)/1.0e6_wp, 3)//' MB)')
+    call self%say_phases(model%clock)
   end subroutine monitor_finish
 
   !> Save what the end of the run tells of its start.
@@ -273,6 +277,31 @@ contains
     call store%get('warned', self%warned)
     call store%get('lost_reported', self%lost_reported)
   end subroutine monitor_restore
+
+  !> A table of the phases of the run: time, share of the loop over time, cost of a point and step.
+  subroutine monitor_say_phases(self, clock)
+    !> The monitor.
+    class(monitor_t), intent(in) :: self
+    !> Time of the phases; nothing is written when it is off.
+    type(phase_clock_t), intent(in) :: clock
+    real(wp) :: seconds(size(phase_names)), loop
+    character(60) :: text
+    integer :: i
+
+    if (.not. clock%on) return
+    seconds = [(clock%seconds(i), i=1, size(phase_names))]
+    loop = max(sum(seconds) - seconds(phase_setup), tiny(1.0_wp))
+    call self%say('phase       seconds   share   ns per point and step')
+    do i = 1, size(phase_names)
+      if (i == phase_setup) then
+        write (text, '(a,f11.3)') phase_names(i), seconds(i)
+      else
+        write (text, '(a,f11.3,f6.1,a,f10.2)') phase_names(i), seconds(i), &
+          100.0_wp*seconds(i)/loop, ' %', 1.0e9_wp*seconds(i)/max(1.0_wp, self%point_steps)
+      end if
+      call self%say(trim(text))
+    end do
+  end subroutine monitor_say_phases
 
   !> Write a line unless quiet.
   subroutine monitor_say(self, text)

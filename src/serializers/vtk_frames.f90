@@ -37,6 +37,10 @@ module mpm_vtk_frames
     character(:), allocatable :: run_name
     !> Significant digits.
     integer :: digits = default_digits
+    !> Numbers as bytes instead of text.
+    logical :: binary = .false.
+    !> Whether there are files of the nodes.
+    logical :: with_nodes = .true.
   contains
     procedure :: init => vtk_frames_init
     procedure :: check => vtk_frames_check
@@ -92,6 +96,10 @@ contains
                               lower=0.0_wp)
     call description%add_integer('digits', 'significant digits of the numbers', &
                                  default=default_digits, lower=9, upper=17)
+    call description%add_integer('binary', '1: binary files, with the numbers in full; 0: text', &
+                                 default=0, lower=0, upper=1)
+    call description%add_integer('nodes', '1: a file of the nodes of the whole grid with each &
+                                 &frame; 0: none', default=1, lower=0, upper=1)
     call description%add_string('frame_folder', 'folder of the frames, relative to the working &
                                 &directory; made when missing')
     call description%add_string('save_folder', 'folder of checkpoints, relative to the working &
@@ -103,6 +111,8 @@ contains
                               &points, in the order of the points file, &
                               &fnd.<id>.<name>.<frame>.vtk the whole grid, 0 where the body has no &
                               &node. A / in a name becomes _.')
+    call description%add_note('binary = 1 writes bytes, highest first, and 4-byte integers, as the &
+                              &format has it; digits has no effect then.')
     call description%add_note('A frame labelled t holds the state at t; frame 0 is the initial &
                               &state (mpm_3d: the state after the first step). Both files have the &
                               &same frame number in their title.')
@@ -123,6 +133,8 @@ contains
     self%rate = properties%real('rate')
     call self%init_saving(properties)
     self%digits = properties%integer('digits')
+    self%binary = properties%integer('binary') == 1
+    self%with_nodes = properties%integer('nodes') == 1
     self%folder = properties%string('frame_folder')
     self%run_name = one_line(properties%string('run_name'))
     if (len_trim(self%folder) == 0) then
@@ -142,15 +154,14 @@ contains
     type(window_t) :: whole
     integer(lp) :: n_bytes
 
-    associate (unused => self)
-    end associate
+    if (.not. self%with_nodes) return
     whole = model%grid%whole()
     n_bytes = least_node_bytes*whole%size()
     if (n_bytes <= available_memory()) return
     call raise(error, err_input, 'the grid has '//to_text(whole%size())//' nodes, whose frames &
                &would take more than '//to_text(real(n_bytes, wp)/1.0e9_wp, 3)// &
-               ' GB each, more than the memory of this machine', hint='use larger cells: frames &
-               &show the nodes of the whole grid')
+               ' GB each, more than the memory of this machine', hint='use larger cells, or nodes &
+               &= 0 for frames without the nodes of the whole grid')
   end subroutine vtk_frames_check
 
   !> Make the folder, see that every file can be written, and ask for velocity gradients.
@@ -196,7 +207,7 @@ contains
     n_written = 0
     total = 0
     do i = 1, size(model%bodies)
-      do k = 1, 2
+      do k = 1, merge(2, 1, self%with_nodes)
         associate (body => model%bodies(i)%body, file => paths(n_written + 1))
           if (k == 1) then
             file%text = self%path('fpd', body)
@@ -238,7 +249,7 @@ contains
     type(vtk_point_fields_t) :: fields
 
     call fields%open(body, path, self%title(model), self%digits, &
-                     when(self%frames, model%time), error)
+                     when(self%frames, model%time), error, self%binary)
     if (allocated(error)) return
     if (body%active .and. allocated(body%points)) call self%send_point_fields(body, fields)
     call fields%commit(error)
@@ -259,7 +270,7 @@ contains
     type(vtk_node_fields_t) :: fields
 
     call fields%open(model%grid, body, path, self%title(model), self%digits, &
-                     when(self%frames, model%time), error)
+                     when(self%frames, model%time), error, self%binary)
     if (allocated(error)) return
     call self%send_node_fields(model, body, fields)
     call fields%commit(error)

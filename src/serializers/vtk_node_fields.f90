@@ -27,7 +27,8 @@ module mpm_vtk_node_fields
 contains
 
   !> Start the file and write the grid.
-  subroutine vtk_node_fields_open(self, grid, body, path, title, digits, when, error)
+  subroutine vtk_node_fields_open(self, grid, body, path, title, digits, when, error, &
+                                  binary)
     !> The file.
     class(vtk_node_fields_t), intent(inout) :: self
     !> The grid.
@@ -44,8 +45,10 @@ contains
     character(*), intent(in) :: when
     !> The file can't be written.
     type(error_t), allocatable, intent(out) :: error
+    !> Numbers as bytes instead of text.
+    logical, intent(in) :: binary
 
-    call self%file%open(path, title, digits, error)
+    call self%file%open(path, title, digits, error, binary)
     if (allocated(error)) return
     self%body = body%name
     self%when = when

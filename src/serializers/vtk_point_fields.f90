@@ -27,7 +27,8 @@ module mpm_vtk_point_fields
 contains
 
   !> Start the file and write the positions.
-  subroutine vtk_point_fields_open(self, body, path, title, digits, when, error)
+  subroutine vtk_point_fields_open(self, body, path, title, digits, when, error, &
+                                   binary)
     !> The file.
     class(vtk_point_fields_t), intent(inout) :: self
     !> The body; without points the file has none.
@@ -42,8 +43,10 @@ contains
     character(*), intent(in) :: when
     !> The file can't be written.
     type(error_t), allocatable, intent(out) :: error
+    !> Numbers as bytes instead of text.
+    logical, intent(in) :: binary
 
-    call self%file%open(path, title, digits, error)
+    call self%file%open(path, title, digits, error, binary)
     if (allocated(error)) return
     self%body = body%name
     self%when = when

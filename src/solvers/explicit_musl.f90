@@ -7,6 +7,7 @@ module mpm_explicit_musl
   use mpm_explicit_steps, only: body_stable_step, update_points
   use mpm_kinds, only: wp
   use mpm_model, only: model_t
+  use mpm_phase_clock, only: phase_p2g
   use mpm_sweep, only: sweep_t
   use mpm_transfer, only: fit_length, map_velocities
   implicit none
@@ -64,6 +65,7 @@ contains
                          sweep=sweep_t(drift=.false., strain=.false., kept=self%transfer%kept))
       if (allocated(error)) return
       associate (body => model%bodies(i)%body)
+        call model%clock%enter(phase_p2g)
         call map_again(body, model%threads)
         if (allocated(self%marks)) then
           call self%marks(i)%impose(body%nodes%window, body%nodes%mass, body%nodes%remapped)

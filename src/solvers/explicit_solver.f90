@@ -6,6 +6,7 @@ module mpm_explicit_solver
   use mpm_explicit_steps, only: locate_points, map_to_nodes, update_nodes
   use mpm_kinds, only: wp
   use mpm_model, only: model_t
+  use mpm_phase_clock, only: phase_contact, phase_nodes
   use mpm_point_blocks, only: fit_points
   use mpm_properties, only: properties_t
   use mpm_seam, only: copy_to_ghosts
@@ -152,7 +153,7 @@ contains
 
     do i = 1, size(model%bodies)
       if (.not. model%bodies(i)%body%active) cycle
-      call map_to_nodes(model%bodies(i)%body, model%threads, error)
+      call map_to_nodes(model%bodies(i)%body, model%threads, error, model%clock)
       if (allocated(error)) return
       call self%transfer%filter(model%bodies(i)%body, model%threads)
     end do
@@ -170,6 +171,7 @@ contains
     integer :: i
 
     kick = dt
+    call model%clock%enter(phase_contact)
     if (self%staggered) kick = 0.5_wp*(model%last_dt + dt)
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
@@ -191,9 +193,11 @@ contains
         if (allocated(body%boundary)) then
           call body%boundary%apply(model%grid, body%points, body%nodes, kick)
         end if
+        call model%clock%enter(phase_nodes)
         call update_nodes(body%nodes, kick, model%threads)
         if (allocated(self%marks)) call self%marks(i)%keep(body%nodes)
         call self%transfer%finish(body%nodes, kick, model%threads)
+        call model%clock%enter(phase_contact)
       end associate
     end do
   end subroutine explicit_solver_push

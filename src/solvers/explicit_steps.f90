@@ -10,6 +10,8 @@ module mpm_explicit_steps
   use mpm_model, only: model_t
   use mpm_momentum, only: add_momentum
   use mpm_nodes, only: nodes_t
+  use mpm_phase_clock, only: phase_clock_t, phase_g2p, phase_material, phase_nodes, phase_p2g, &
+                             phase_sort
   use mpm_point_blocks, only: sweep_block
   use mpm_points, only: points_t
   use mpm_scatter, only: scatter
@@ -60,17 +62,20 @@ contains
   end subroutine locate_points
 
   !> Map a body to its nodes: mass, momentum, velocity, internal force and body force.
-  subroutine map_to_nodes(body, threads, error)
+  subroutine map_to_nodes(body, threads, error, clock)
     !> The body.
     class(body_t), intent(inout) :: body
     !> Number of threads.
     integer, intent(in) :: threads
     !> The nodes need more memory than there is.
     type(error_t), allocatable, intent(out) :: error
+    !> Time of the phases.
+    type(phase_clock_t), intent(inout), optional :: clock
     type(window_t) :: window
     integer(lp) :: bytes_missing
     integer :: n, dim
 
+    if (present(clock)) call clock%enter(phase_nodes)
     dim = body%points%stencil%dim
     if (body%points%hi(1) >= 0) then
       window%lo = body%points%lo
@@ -88,7 +93,9 @@ contains
                  &put points that lie far apart into bodies of their own')
       return
     end if
+    if (present(clock)) call clock%enter(phase_sort)
     call body%points%refresh_order()
+    if (present(clock)) call clock%enter(phase_p2g)
     n = body%points%n_inside
     if (n == 0) return
     associate (points => body%points, nodes => body%nodes)
@@ -103,6 +110,7 @@ contains
                           points%extent(:n), points%mass(:n), nodes%momentum, &
                           affine=points%affine(:, :n))
       end if
+      if (present(clock)) call clock%enter(phase_nodes)
       call finish_mapping(points%kin%nvel, window%size(), threads, points%mass_cutoff, &
                           points%body_force, nodes%mass, nodes%momentum, nodes%force, &
                           nodes%velocity, nodes%increment)
@@ -261,6 +269,7 @@ contains
     logical :: with_stress
 
     associate (item => model%bodies(body)%body)
+      call model%clock%enter(phase_g2p)
       if (item%points%n_inside == 0) return
       if (any(item%points%stencil%periodic)) call fill_ghosts(item, sweep)
       blocks = (item%points%n_inside + block_size - 1)/block_size
@@ -269,10 +278,10 @@ contains
       if (present(keep_stress)) with_stress = with_stress .and. .not. keep_stress
       if (with_stress) then
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
-                          keep_gradient, slot, cause, item%material, sweep)
+                          keep_gradient, slot, cause, model%clock, item%material, sweep)
       else
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
-                          keep_gradient, slot, cause, sweep=sweep)
+                          keep_gradient, slot, cause, model%clock, sweep=sweep)
       end if
       first_bad = 0
       do i = 1, blocks
@@ -307,7 +316,7 @@ contains
   end subroutine fill_ghosts
 
   !> Visit the points of a body in blocks on all threads.
-  subroutine sweep_blocks(points, nodes, stencil, threads, dt, keep_gradient, slot, cause, &
+  subroutine sweep_blocks(points, nodes, stencil, threads, dt, keep_gradient, slot, cause, clock, &
                           material, sweep)
     !> The points.
     class(points_t), intent(inout) :: points
@@ -325,28 +334,37 @@ contains
     integer, intent(out) :: slot(:)
     !> What is wrong with it. (blocks)
     integer, intent(out) :: cause(:)
+    !> Time of the phases.
+    type(phase_clock_t), intent(inout) :: clock
     !> Constitutive law.
     class(material_t), intent(in), optional :: material
     !> What to do.
     type(sweep_t), intent(in), optional :: sweep
     integer :: block, lo(3), hi(3), block_lo(3), block_hi(3), n_changed, changed
+    integer(lp) :: on_stress, on_all, ticks(2)
 
+    on_stress = 0
+    on_all = 0
+    ticks = 0
     lo = huge(1)
     hi = -1
     n_changed = 0
     !$omp parallel do default(none) schedule(static) &
     !$omp num_threads(useful_threads(threads, points%n_inside)) &
-    !$omp shared(points, nodes, stencil, dt, keep_gradient, slot, cause, material, sweep) &
-    !$omp private(block, block_lo, block_hi, changed) &
-    !$omp reduction(min:lo) reduction(max:hi) reduction(+:n_changed)
+    !$omp shared(points, nodes, stencil, dt, keep_gradient, slot, cause, material, sweep, clock) &
+    !$omp private(block, block_lo, block_hi, changed) firstprivate(ticks) &
+    !$omp reduction(min:lo) reduction(max:hi) reduction(+:n_changed, on_stress, on_all)
     do block = 1, size(slot)
       call update_block(points, nodes, stencil, dt, keep_gradient, block, slot(block), &
-                        cause(block), block_lo, block_hi, changed, material, sweep)
+                        cause(block), block_lo, block_hi, changed, clock%on, ticks, material, sweep)
+      on_stress = on_stress + ticks(1)
+      on_all = on_all + ticks(2)
       lo = min(lo, block_lo)
       hi = max(hi, block_hi)
       n_changed = n_changed + changed
     end do
     !$omp end parallel do
+    call clock%move(phase_material, on_stress, on_all)
     if (present(sweep)) then
       if (.not. sweep%drift) return
     end if
@@ -358,7 +376,7 @@ contains
 
   !> Interpolate to one block of points, move them, update their stress and their keys.
   subroutine update_block(points, nodes, stencil, dt, keep_gradient, block, slot, cause, lo, hi, &
-                          changed, material, sweep)
+                          changed, timed, ticks, material, sweep)
     !> The points; the blocks of different threads do not overlap.
     class(points_t), intent(inout) :: points
     !> Their nodes, after the grid update.
@@ -381,14 +399,22 @@ contains
     integer, intent(out) :: hi(3)
     !> Points whose key changed.
     integer, intent(out) :: changed
+    !> Whether to take the time.
+    logical, intent(in) :: timed
+    !> Clock counts of the stress and of all; untouched unless timed.
+    integer(lp), intent(inout) :: ticks(2)
     !> Constitutive law.
     class(material_t), intent(in), optional :: material
     !> What to do.
     type(sweep_t), intent(in), optional :: sweep
     real(wp) :: velocity(3*block_size), increment(3*block_size), gradient(9*block_size)
     integer :: key(block_size), a, b, n
+    integer(lp) :: begun, now
     logical :: strain, drift
 
+    begun = 0
+    if (timed) call system_clock(begun)
+    if (timed) ticks(1) = 0
     strain = .true.
     drift = .true.
     if (present(sweep)) then
@@ -419,6 +445,7 @@ contains
     if (slot == 0) then
       cause = went_well
       if (present(material) .and. strain) then
+        if (timed) call system_clock(ticks(1))
         if (drift) then
           call advance_stress(points%kin, material, n, dt, gradient, points%mass(a:b), &
                               points%volume(a:b), points%stress(:, a:b), &
@@ -428,6 +455,8 @@ contains
                                       points%stress(:, a:b), points%history(:, a:b), slot)
         end if
         if (slot > 0) cause = bad_stress
+        if (timed) call system_clock(now)
+        if (timed) ticks(1) = now - ticks(1)
       end if
       if (drift) then
         if (any(stencil%periodic)) call wrap_points(stencil, n, points%x(:, a:b))
@@ -438,6 +467,8 @@ contains
       end if
     end if
     if (slot > 0) slot = slot + a - 1
+    if (timed) call system_clock(now)
+    if (timed) ticks(2) = now - begun
   end subroutine update_block
 
   !> Advance the stress of a block of points over one step.

@@ -12,6 +12,7 @@ module mpm_explicit_usl_with_volumetric_strain_smoothing
   use mpm_kinematics, only: kinematics_t, type_plane_strain
   use mpm_material, only: material_t
   use mpm_model, only: model_t
+  use mpm_phase_clock, only: phase_material
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
   use mpm_stencil, only: block_size
@@ -305,6 +306,7 @@ contains
       end if
       call update_points(model, body, dt, .true., error, keep_stress=.true.)
       if (allocated(error)) return
+      call model%clock%enter(phase_material)
       smoothed = points%volume(:n)
       call self%smooth(model, points, n, smoothed)
       call stress_of_body(model%bodies(body)%body, model%threads, dt, n, before, smoothed, &

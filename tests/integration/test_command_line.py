@@ -216,7 +216,7 @@ def test_summary_of_a_run(mpm3d: Run, tmp_path: Path) -> None:
 
 
 def test_quiet_and_verbose(mpm3d: Run, tmp_path: Path) -> None:
-    """-q says nothing, -v has a line for every frame more than a usual run; the frames stay."""
+    """-q says nothing; -v adds a line for every frame and a table of the phases; frames stay."""
     touching_scene().write(tmp_path)
     quiet, usual, verbose = (
         mpm3d("-c", "scene.cfg", *options, cwd=tmp_path) for options in (["-q"], [], ["-v"])
@@ -224,8 +224,17 @@ def test_quiet_and_verbose(mpm3d: Run, tmp_path: Path) -> None:
     for result in (quiet, usual, verbose):
         assert (result.returncode, result.stderr) == (0, "")
     assert quiet.stdout == ""
-    assert len(verbose.stdout.splitlines()) == len(usual.stdout.splitlines()) + 3
+    lines = verbose.stdout.splitlines()
+    first = lines.index("phase       seconds   share   ns per point and step")
+    assert first == len(usual.stdout.splitlines()) + 3
     assert "frame 1 at t = 0.01 s, step 10" in verbose.stdout
+    assert lines[first + 1].split()[0] == "set-up"
+    rows = [line.split() for line in lines[first + 2 :]]
+    names = ["sort", "P2G", "nodes", "contact", "G2P", "material", "output", "other"]
+    assert [row[0] for row in rows] == names
+    assert all(float(row[1]) >= 0.0 and float(row[4]) >= 0.0 for row in rows)
+    # The shares are rounded to a tenth.
+    assert sum(float(row[2]) for row in rows) == pytest.approx(100.0, abs=0.05 * len(rows))
     assert len(read_series(tmp_path / "frames", "fpd", 0, "low")) == 3
 
 

@@ -1,0 +1,138 @@
+"""Runs of a program, timed from outside as whole processes."""
+
+from __future__ import annotations
+
+import os
+import re
+import statistics
+import subprocess
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from bench.scenes import Case
+
+#: Steps of the run whose time is subtracted: it has the reading, the set-up and the first frame.
+SHORT = 5
+#: What one point and step costs, about; decides the number of steps. [s]
+GUESS = 60e-9
+#: Seconds between two looks at a process that runs.
+POLL = 0.002
+#: Frames per second of simulated time with which the share of the frames is stated. [1/s]
+FRAME_RATE = 60.0
+
+
+class BenchError(Exception):
+    """A program that did not do what was asked."""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a process took: seconds on the wall and of processors, bytes of memory at most."""
+
+    wall: float
+    cpu: float
+    memory: int
+    text: str
+
+
+def peak_memory(pid: int) -> int:
+    """Bytes that a process has held at most so far; 0 when it is gone."""
+    try:
+        found = re.search(r"^VmHWM:\s+(\d+) kB", Path(f"/proc/{pid}/status").read_text(), re.M)
+    except OSError:
+        return 0
+    return 1024 * int(found[1]) if found else 0
+
+
+def run(command: list[str], folder: Path) -> Cost:
+    """Run a command to its end.
+
+    The peak of the memory is asked for while it runs: what the system tells of a process that has
+    ended has the memory of this one in it.
+    """
+    memory = 0
+    with tempfile.TemporaryFile("w+") as output:
+        start = time.perf_counter()
+        process = subprocess.Popen(command, cwd=folder, stdout=output, stderr=subprocess.STDOUT)
+        while True:
+            pid, status, usage = os.wait4(process.pid, os.WNOHANG)
+            if pid:
+                break
+            memory = max(memory, peak_memory(process.pid))
+            time.sleep(POLL)
+        wall = time.perf_counter() - start
+        process.returncode = os.waitstatus_to_exitcode(status)
+        output.seek(0)
+        text = output.read()
+    if process.returncode != 0:
+        raise BenchError(f"{' '.join(command)} ended with {process.returncode}:\n{text}")
+    return Cost(wall, usage.ru_utime + usage.ru_stime, memory, text)
+
+
+def command_of(program: str, case: Case, steps: int, threads: int, *options: str) -> list[str]:
+    """Return the command that runs a case for so many steps."""
+    stop = f"driver.properties={{{steps * case.dt!r}}}"
+    return [program, "-c", "bench.cfg", "--threads", str(threads), "--set", stop, *options]
+
+
+def spread(samples: list[float]) -> dict[str, float]:
+    """Median and range."""
+    return {"median": statistics.median(samples), "min": min(samples), "max": max(samples)}
+
+
+def phases(text: str) -> dict[str, float]:
+    """Read the table that `mpm3d -v` prints: seconds of each phase."""
+    rows = re.findall(r"^([\w-]+) +(\d+\.\d+)(?: +\d+\.\d %.*)?$", text, re.M)
+    return {name: float(seconds) for name, seconds in rows}
+
+
+def stated_memory(text: str) -> float:
+    """Bytes of points and nodes that the program states."""
+    found = re.search(r"^memory: +(\S+) MB for points and nodes", text, re.M)
+    return 1e6 * float(found[1]) if found else 0.0
+
+
+def measure(
+    program: str, case: Case, threads: int, repeat: int, seconds: float, clock: str
+) -> dict[str, object]:
+    """Measure one case; `clock` is `wall` or `cpu`."""
+    per_step = GUESS * case.points
+    steps = SHORT + max(10, round(seconds / per_step))
+    samples, set_up, memory = [], [], 0
+    for _ in range(repeat):
+        low = run(command_of(program, case, SHORT, threads, "-q"), case.folder)
+        high = run(command_of(program, case, steps, threads, "-q"), case.folder)
+        check = run(command_of(program, case, SHORT, threads, "-q", "--check"), case.folder)
+        spent = getattr(high, clock) - getattr(low, clock)
+        samples.append(1e9 * spent / ((steps - SHORT) * case.points))
+        set_up.append(check.wall)
+        memory = max(memory, high.memory)
+    told = run(command_of(program, case, steps, threads, "-v"), case.folder).text
+    table = phases(told)
+    loop = {name: s for name, s in table.items() if name not in ("set-up", "output")}
+    total = sum(loop.values())
+    # One frame against the steps until the next one.
+    between = total / steps / (FRAME_RATE * case.dt)
+    frame = table.get("output", 0.0)
+    return {
+        "scene": case.scene.name,
+        "points": case.points,
+        "threads": threads,
+        "steps": [SHORT, steps],
+        "clock": clock,
+        "ns_per_point_and_step": spread(samples),
+        "set_up_s": min(set_up),
+        "bytes_per_point": memory / case.points,
+        "stated_bytes_per_point": stated_memory(told) / case.points,
+        "phases": {name: s / total for name, s in loop.items()} if total > 0.0 else {},
+        "frame_s": frame,
+        "frames_share": frame / (frame + between) if frame > 0.0 else 0.0,
+    }
+
+
+def reference(kernel: str) -> dict[str, float]:
+    """Run the bare kernel: bandwidth, time and bytes of a point and step."""
+    text = run([kernel], Path()).text
+    return {name: float(value) for name, value in re.findall(r"^(\w+) +([\d.]+)$", text, re.M)}

@@ -1,0 +1,104 @@
+"""Tables of what was measured."""
+
+from __future__ import annotations
+
+from typing import Any
+
+Row = dict[str, Any]
+
+#: Targets per point and step at 250,000 points on one thread, on a machine whose bare kernel needs
+#: `KERNEL`. [ns]
+TARGETS = {
+    "3d-linear": 60.0,
+    "3d-cpdi": 125.0,
+    "3d-ugimp": 125.0,
+    "3d-quadratic": 125.0,
+    "3d-cubic": 350.0,
+    "plane-linear": 25.0,
+    "1d-linear": 12.0,
+}
+#: Time of the bare kernel to which the targets belong. [ns]
+KERNEL = 60.0
+#: Points of the rows to which the targets belong.
+TARGET_POINTS = range(200_000, 300_000)
+
+HEADER = (
+    f"{'scene':20}{'points':>9}{'thr':>4}{'ns/point/step':>14}  {'(min .. max)':17}"
+    f"{'set-up s':>9}{'B/point':>8}{'stated':>7}{'frames':>8}"
+)
+
+
+def line(row: Row) -> str:
+    """Return a row of the table."""
+    cost = row["ns_per_point_and_step"]
+    scatter = f"({cost['min']:.1f} .. {cost['max']:.1f})"
+    return (
+        f"{row['scene']:20}{row['points']:>9}{row['threads']:>4}{cost['median']:>14.1f}  "
+        f"{scatter:17}{row['set_up_s']:>9.2f}{row['bytes_per_point']:>8.0f}"
+        f"{row['stated_bytes_per_point']:>7.0f}{100 * row['frames_share']:>7.1f}%"
+    )
+
+
+def phase_line(row: Row) -> str:
+    """Return the shares of the phases."""
+    shares = (f"{name} {100 * share:.0f} %" for name, share in row["phases"].items())
+    return "    " + ", ".join(shares)
+
+
+def key(row: Row) -> tuple[str, int, int]:
+    """Return what makes rows of two runs comparable."""
+    return row["scene"], row["points"], row["threads"]
+
+
+def targets(rows: list[Row], reference: dict[str, float]) -> list[str]:
+    """Compare the rows with the targets, scaled by the bare kernel."""
+    kernel = reference["kernel_ns"]
+    roofline = reference["bytes_per_point"] / reference["triad_gb_per_s"]
+    lines = [
+        f"bare kernel {kernel:.1f} ns, triad {reference['triad_gb_per_s']:.1f} GB/s: "
+        f"{reference['bytes_per_point']:.0f} bytes take {roofline:.1f} ns",
+        f"{'scene':20}{'ns':>8}{'target':>8}{'scaled':>8}{'/kernel':>9}{'/roofline':>11}",
+    ]
+    for row in rows:
+        if row["scene"] not in TARGETS or row["threads"] != 1:
+            continue
+        if row["points"] not in TARGET_POINTS:
+            continue
+        cost, target = row["ns_per_point_and_step"]["median"], TARGETS[row["scene"]]
+        lines.append(
+            f"{row['scene']:20}{cost:>8.1f}{target:>8.0f}{target * kernel / KERNEL:>8.0f}"
+            f"{cost / kernel:>9.2f}{cost / roofline:>11.1f}"
+        )
+    return lines
+
+
+def speedups(rows: list[Row]) -> list[str]:
+    """Time on one thread over that on several."""
+    single = {key(row)[:2]: row for row in rows if row["threads"] == 1}
+    lines = []
+    for row in rows:
+        if row["threads"] == 1 or key(row)[:2] not in single:
+            continue
+        one = single[key(row)[:2]]["ns_per_point_and_step"]["median"]
+        many = row["ns_per_point_and_step"]["median"]
+        lines.append(
+            f"{row['scene']:20}{row['points']:>9}: {row['threads']} threads {one / many:.2f} "
+            f"times as fast as one"
+        )
+    return lines
+
+
+def comparison(rows: list[Row], earlier: list[Row]) -> list[str]:
+    """Time of each row over that of an earlier run."""
+    before = {key(row): row for row in earlier}
+    lines = [f"{'scene':20}{'points':>9}{'thr':>4}{'before':>9}{'now':>9}{'ratio':>7}"]
+    for row in rows:
+        if key(row) not in before:
+            continue
+        old = before[key(row)]["ns_per_point_and_step"]["median"]
+        new = row["ns_per_point_and_step"]["median"]
+        lines.append(
+            f"{row['scene']:20}{row['points']:>9}{row['threads']:>4}{old:>9.1f}{new:>9.1f}"
+            f"{new / old:>7.2f}"
+        )
+    return lines
