@@ -91,6 +91,8 @@ module mpm_points
     procedure(write_fields_i), deferred :: write_fields
     !> Write what the config asks to keep of the points, when the run begins.
     procedure :: write_table => points_write_table
+    !> Whether the functions are averaged over the corners of the points' boxes.
+    procedure :: averages => points_averages
     !> Give all arrays their length.
     procedure :: allocate => points_allocate
     !> Take a basis and find the keys of all points.
@@ -145,6 +147,20 @@ contains
     associate (unused => self)
     end associate
   end subroutine points_write_table
+
+  !> Most points do as the solver says.
+  pure function points_averages(self, cpdi) result(averages)
+    !> The points.
+    class(points_t), intent(in) :: self
+    !> What the solver asks for.
+    logical, intent(in) :: cpdi
+    !> Whether the functions are averaged over the corners of the points' boxes.
+    logical :: averages
+
+    associate (unused => self)
+    end associate
+    averages = cpdi
+  end function points_averages
 
   !> Give all arrays their length; everything is 0 and in the order of the points file.
   subroutine points_allocate(self, kin, n)

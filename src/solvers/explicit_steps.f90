@@ -47,7 +47,8 @@ contains
     type(stencil_t) :: stencil
 
     associate (item => model%bodies(body)%body)
-      call model%grid%make_stencil(averaged, maxval(item%points%extent), stencil, error)
+      call model%grid%make_stencil(item%points%averages(averaged), maxval(item%points%extent), &
+                                   stencil, error)
       if (allocated(error)) then
         error%message = 'body "'//item%name//'": '//error%message
         error%file = item%points%file
