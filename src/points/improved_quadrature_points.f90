@@ -1,13 +1,19 @@
 !> Points with a choice of quadratures, whose positions can be corrected.
 module mpm_improved_quadrature_points
   use mpm_default_points, only: default_points_t
+  use mpm_delta_correction, only: correct_by_delta
   use mpm_description, only: description_t
   use mpm_document, only: value_t
   use mpm_errors, only: error_t
+  use mpm_field_writer, only: field_writer_t
   use mpm_grid, only: grid_t
+  use mpm_kinds, only: lp, wp
   use mpm_properties, only: properties_t
-  use mpm_quadrature_settings, only: add_quadrature_properties, no_correction, &
-                                     quadrature_settings_t
+  use mpm_quadrature_settings, only: add_quadrature_properties, newton_shift, &
+                                     no_correction, quadrature_settings_t, speed_shift, &
+                                     sph_shift, strain_shift
+  use mpm_volume_overshoot, only: gradients_at, measure_overshoot, overshoot_t
+  use mpm_window, only: window_t
   implicit none
   private
   public :: improved_quadrature_points_t
@@ -16,10 +22,19 @@ module mpm_improved_quadrature_points
   type, extends(default_points_t) :: improved_quadrature_points_t
     !> The rules.
     type(quadrature_settings_t) :: settings
+    !> The grid, to whose nodes the volumes of the points are compared.
+    class(grid_t), allocatable :: grid
+    !> Time since the last correction. [s]
+    real(wp) :: elapsed = 0.0_wp
   contains
     procedure, nopass :: describe => improved_quadrature_points_describe
     procedure :: init => improved_quadrature_points_init
     procedure :: averages => improved_quadrature_points_averages
+    procedure :: correct => improved_quadrature_points_correct
+    procedure :: write_fields => improved_quadrature_points_write_fields
+    procedure :: write_node_fields => improved_quadrature_points_write_node_fields
+    !> Take the rules, and what they need beside the table.
+    procedure :: adopt => improved_quadrature_points_adopt
   end type improved_quadrature_points_t
 
 contains
@@ -62,13 +77,103 @@ contains
     if (self%settings%quadrature > 0) then
       call properties%reject('quadrature', 'quadrature 1 to 4 are not connected yet', error, &
                              'use quadrature 0')
-    else if (self%settings%rule /= no_correction) then
-      call properties%reject('position', 'position rules 1 to 5 are not connected yet', error, &
-                             'use position 0')
     end if
     if (allocated(error)) return
     call self%default_points_t%init(grid, properties, point_file, config_file, error)
+    if (.not. allocated(error)) call self%adopt(grid, properties, error)
   end subroutine improved_quadrature_points_init
+
+  !> Take the rules, and what they need beside the table.
+  subroutine improved_quadrature_points_adopt(self, grid, properties, error)
+    !> The points, read, with their settings.
+    class(improved_quadrature_points_t), intent(inout) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Checked properties, for the place of a bad one.
+    type(properties_t), intent(in) :: properties
+    !> Rules that do not go with the grid.
+    type(error_t), allocatable, intent(out) :: error
+    integer :: periods(3)
+
+    periods = grid%periods()
+    if (self%settings%x_periodic .and. periods(1) == 0) then
+      call properties%reject('flags', 'X_PERIODIC, but the grid is not periodic along x', error, &
+                             'use a grid such as CartesianCustom, or remove the flag')
+      return
+    end if
+    allocate (self%grid, source=grid)
+    if (self%settings%rule < sph_shift) return
+    allocate (self%shifted(self%kin%dim, self%n), source=0.0_wp)
+    self%needs_gradient = self%settings%corrects_velocity .or. self%settings%rule == strain_shift &
+                          .or. self%settings%strain_limit > 0.0_wp
+    if (self%needs_gradient) then
+      allocate (self%gradient(self%kin%ngrad, self%n), source=0.0_wp)
+    end if
+  end subroutine improved_quadrature_points_adopt
+
+  !> Correct positions at the end of a step.
+  subroutine improved_quadrature_points_correct(self, step, dt, threads)
+    !> The points, moved.
+    class(improved_quadrature_points_t), intent(inout) :: self
+    !> Number of the step, from 1.
+    integer(lp), intent(in) :: step
+    !> Its length. [s]
+    real(wp), intent(in) :: dt
+    !> Number of threads.
+    integer, intent(in) :: threads
+
+    if (self%settings%rule == no_correction) return
+    self%elapsed = self%elapsed + dt
+    if (mod(step, int(self%settings%skip, lp)) /= 0) return
+    ! Points that left the grid in this step take no part.
+    call self%refresh_order()
+    select case (self%settings%rule)
+    case (strain_shift, speed_shift, newton_shift)
+      call correct_by_delta(self, self%grid, self%settings, self%elapsed, threads)
+    end select
+    self%elapsed = 0.0_wp
+  end subroutine improved_quadrature_points_correct
+
+  !> Send the fields of a frame.
+  subroutine improved_quadrature_points_write_fields(self, writer)
+    !> The points.
+    class(improved_quadrature_points_t), intent(in) :: self
+    !> Receiver of point fields.
+    class(field_writer_t), intent(inout) :: writer
+    type(overshoot_t) :: overshoot
+    real(wp), allocatable :: gradient(:, :)
+
+    call self%default_points_t%write_fields(writer)
+    allocate (gradient(self%kin%dim, self%n), source=0.0_wp)
+    call measure_overshoot(self, self%grid, overshoot)
+    call gradients_at(self, overshoot%window, overshoot%relative, 1, gradient)
+    call writer%vector('grad_err', gradient)
+    call gradients_at(self, overshoot%window, overshoot%excess, 1, gradient)
+    call writer%vector('grad_H', gradient)
+    if (allocated(self%shifted)) call writer%vector('del_pos', self%shifted)
+  end subroutine improved_quadrature_points_write_fields
+
+  !> Send nodal fields of a frame.
+  subroutine improved_quadrature_points_write_node_fields(self, writer)
+    !> The points.
+    class(improved_quadrature_points_t), intent(in) :: self
+    !> Receiver of nodal fields.
+    class(field_writer_t), intent(inout) :: writer
+    type(overshoot_t) :: overshoot
+    type(window_t) :: whole
+    real(wp), allocatable :: own(:)
+    integer :: i
+
+    whole = self%grid%whole()
+    allocate (own(whole%size()))
+    do i = 1, size(own)
+      own(i) = self%grid%node_volume(whole%node(i))
+    end do
+    call writer%scalar('grid_volume', own, whole)
+    call measure_overshoot(self, self%grid, overshoot)
+    call writer%scalar('err', overshoot%relative, overshoot%window)
+    call writer%scalar('H', overshoot%excess, overshoot%window)
+  end subroutine improved_quadrature_points_write_node_fields
 
   !> The quadrature rule decides, not the solver.
   pure function improved_quadrature_points_averages(self, cpdi) result(averages)
