@@ -39,8 +39,7 @@ contains
     allocate (shift(points%kin%dim, n))
     if (settings%rule /= newton_shift) then
       call measure_overshoot(points, grid, overshoot, threads)
-      call gradients_at(points, overshoot%window, overshoot%relative*sqrt(overshoot%own), threads, &
-                        shift)
+      call gradients_at(points, overshoot, overshoot%relative*sqrt(overshoot%own), threads, shift)
       call scale_by_rate(points, settings, dt, shift)
       call shift_points(points, settings, threads, shift)
       return
@@ -50,7 +49,7 @@ contains
       if (iteration > 1) call points%refresh_order()
       call measure_overshoot(points, grid, overshoot, threads)
       if (.not. maxval(overshoot%relative) > settings%tolerance) return
-      call gradients_at(points, overshoot%window, overshoot%excess, threads, shift)
+      call gradients_at(points, overshoot, overshoot%excess, threads, shift)
       call find_step(points, settings%alpha, overshoot%excess, shift, step)
       call descend(points, settings, step, dt, shift)
       call shift_points(points, settings, threads, shift)
@@ -100,7 +99,8 @@ contains
     norm = sqrt(sum(gradient**2))
   end function distortion
 
-  !> Step of Newton's method for sum H**2 = 0 along its gradient: alpha sum H**2/(2 sum (V grad H)**2).
+  !> Step of Newton's method for sum H**2 = 0 along its gradient, alpha sum H**2/(2 sum V**2 |grad
+  !! H|**2).
   subroutine find_step(points, alpha, excess, gradient, step)
     !> The points.
     class(points_t), intent(in) :: points

@@ -8,10 +8,12 @@ module mpm_improved_quadrature_points
   use mpm_field_writer, only: field_writer_t
   use mpm_grid, only: grid_t
   use mpm_kinds, only: lp, wp
+  use mpm_point_cells, only: point_cells_t
   use mpm_properties, only: properties_t
   use mpm_quadrature_settings, only: add_quadrature_properties, newton_shift, &
                                      no_correction, quadrature_settings_t, speed_shift, &
                                      sph_shift, strain_shift
+  use mpm_sph_shift, only: correct_as_sph, neighbour_distance
   use mpm_volume_overshoot, only: gradients_at, measure_overshoot, overshoot_t
   use mpm_window, only: window_t
   implicit none
@@ -93,6 +95,8 @@ contains
     type(properties_t), intent(in) :: properties
     !> Rules that do not go with the grid.
     type(error_t), allocatable, intent(out) :: error
+    type(point_cells_t) :: cells
+    character(:), allocatable :: message
     integer :: periods(3)
 
     periods = grid%periods()
@@ -100,6 +104,14 @@ contains
       call properties%reject('flags', 'X_PERIODIC, but the grid is not periodic along x', error, &
                              'use a grid such as CartesianCustom, or remove the flag')
       return
+    end if
+    if (self%settings%rule == sph_shift) then
+      call cells%init(grid, neighbour_distance(self%settings%r), message)
+      if (allocated(message)) then
+        call properties%reject('position', message, error, 'neighbours are looked for at distances &
+                               &up to 2 r: use a smaller r')
+        return
+      end if
     end if
     allocate (self%grid, source=grid)
     if (self%settings%rule < sph_shift) return
@@ -128,8 +140,11 @@ contains
     ! Points that left the grid in this step take no part.
     call self%refresh_order()
     select case (self%settings%rule)
+    case (sph_shift)
+      call correct_as_sph(self, self%grid, self%settings, self%elapsed, threads)
     case (strain_shift, speed_shift, newton_shift)
       call correct_by_delta(self, self%grid, self%settings, self%elapsed, threads)
+    case default
     end select
     self%elapsed = 0.0_wp
   end subroutine improved_quadrature_points_correct
@@ -146,9 +161,9 @@ contains
     call self%default_points_t%write_fields(writer)
     allocate (gradient(self%kin%dim, self%n), source=0.0_wp)
     call measure_overshoot(self, self%grid, overshoot)
-    call gradients_at(self, overshoot%window, overshoot%relative, 1, gradient)
+    call gradients_at(self, overshoot, overshoot%relative, 1, gradient)
     call writer%vector('grad_err', gradient)
-    call gradients_at(self, overshoot%window, overshoot%excess, 1, gradient)
+    call gradients_at(self, overshoot, overshoot%excess, 1, gradient)
     call writer%vector('grad_H', gradient)
     if (allocated(self%shifted)) call writer%vector('del_pos', self%shifted)
   end subroutine improved_quadrature_points_write_fields

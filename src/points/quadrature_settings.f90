@@ -111,8 +111,6 @@ contains
     call description%add_integer('position', '0: positions as they are; 1: avoid-a-void; 2: shift &
                                  &as in SPH; 3, 4, 5: delta-correction by strain, by displacement, &
                                  &by Newton''s method', default=no_correction, lower=0, upper=5)
-    call description%add_integer('integers', 'entries without names: skip (position rules 1, 2) or &
-                                 &max_iterations (rule 5), then remember_element', is_list=.true.)
     call description%add_integer('skip', 'rules 1, 2: steps from one correction to the next', &
                                  default=1, lower=1, by_name=.true.)
     call description%add_integer('max_iterations', 'rule 5: most iterations in a step', &
@@ -121,6 +119,8 @@ contains
                                  &Cartesian grids', default=0, lower=0, upper=1, by_name=.true.)
     call description%add_integer('seed', 'rule 1: selects the random directions', default=0, &
                                  by_name=.true.)
+    call description%add_integer('integers', 'entries without names: skip (position rules 1, 2) or &
+                                 &max_iterations (rule 5), then remember_element', is_list=.true.)
     call description%add_string('output_folder', 'folder for the corners of the points'' boxes, &
                                 &quadratures 1 to 4; without it they are not written', default='')
     call description%add_string('flags', 'X_PERIODIC: the grid must be periodic along x (rules 1 &
@@ -135,11 +135,6 @@ contains
     !> The description, started.
     type(description_t), intent(inout) :: description
 
-    call description%add_real('reals', '-', 'entries without names: scale (quadrature 1, whenever &
-                              &there are such entries); those of the position rule: r, merge, &
-                              &buffer (1), r, C (2), h, alpha (3, 4), h, alpha, tolerance (5); &
-                              &then one for each flag that takes one, in the order of the flags', &
-                              is_list=.true.)
     call description%add_real('scale', '-', 'quadrature 1: side of a box over that of the cube of &
                               &the point''s volume', default=1.0_wp, above=0.0_wp, by_name=.true.)
     call description%add_real('r', 'm', 'rules 1, 2: radius of a point', default=-1.0_wp, &
@@ -163,6 +158,11 @@ contains
                               default=1.0_wp, above=0.0_wp, by_name=.true.)
     call description%add_real('strain_limit', '-', 'rule 5: longest shift over |L| dt V^(1/d)', &
                               default=1.0_wp, above=0.0_wp, by_name=.true.)
+    call description%add_real('reals', '-', 'entries without names: scale (quadrature 1, whenever &
+                              &there are such entries); those of the position rule: r, merge, &
+                              &buffer (1), r, C (2), h, alpha (3, 4), h, alpha, tolerance (5); &
+                              &then one for each flag that takes one, in the order of the flags', &
+                              is_list=.true.)
   end subroutine add_reals
 
   !> Take all numbers from the properties.
@@ -344,8 +344,8 @@ contains
       values(k) = in_order(i)
       if (values(k) > 0.0_wp .or. (may_vanish(k) .and. values(k) >= 0.0_wp)) cycle
       call properties%reject('reals', trim(real_names(k))//' = '//to_text(values(k))//' is out of &
-                             &bounds: '//trim(merge('at least 0', 'above 0   ', may_vanish(k))), error, &
-                             order_hint(sequence))
+                             &bounds: '//trim(merge('at least 0', 'above 0   ', may_vanish(k))), &
+                             error, order_hint(sequence))
       return
     end do
     do i = 1, size(sequence)

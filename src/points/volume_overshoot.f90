@@ -106,12 +106,12 @@ contains
   end function shared_volume
 
   !> Gradients of a nodal field at the points inside the grid, sum_i G_ip f_i.
-  subroutine gradients_at(points, window, field, threads, gradient)
+  subroutine gradients_at(points, overshoot, field, threads, gradient)
     !> The points, with keys of their positions.
     class(points_t), intent(in) :: points
-    !> Window of the field; holds all nodes that the points reach.
-    type(window_t), intent(in) :: window
-    !> Values at the nodes, anything at ghosts. (nn)
+    !> Overshoot at the present positions, for the nodes that the points reach.
+    type(overshoot_t), intent(in) :: overshoot
+    !> Values at these nodes, anything at ghosts. (nn)
     real(wp), intent(in) :: field(:)
     !> Number of threads.
     integer, intent(in) :: threads
@@ -125,12 +125,12 @@ contains
     allocate (values(points%kin%nvel, size(field)), source=0.0_wp)
     values(1, :) = field
     if (any(points%stencil%periodic)) then
-      call copy_to_ghosts(points%stencil, window, points%kin%nvel, values)
+      call copy_to_ghosts(points%stencil, overshoot%window, points%kin%nvel, values)
     end if
-    !$omp parallel do default(none) schedule(static) shared(points, window, values, gradient) &
+    !$omp parallel do default(none) schedule(static) shared(points, overshoot, values, gradient) &
     !$omp num_threads(useful_threads(threads, points%n_inside)) private(first)
     do first = 1, points%n_inside, block_size
-      call gradients_of_block(points, window, values, first, gradient)
+      call gradients_of_block(points, overshoot%window, values, first, gradient)
     end do
     !$omp end parallel do
   end subroutine gradients_at
