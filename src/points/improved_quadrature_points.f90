@@ -1,5 +1,6 @@
 !> Points with a choice of quadratures, whose positions can be corrected.
 module mpm_improved_quadrature_points
+  use mpm_avoid_a_void, only: insert_and_merge
   use mpm_default_points, only: default_points_t
   use mpm_delta_correction, only: correct_by_delta
   use mpm_description, only: description_t
@@ -8,11 +9,13 @@ module mpm_improved_quadrature_points
   use mpm_field_writer, only: field_writer_t
   use mpm_grid, only: grid_t
   use mpm_kinds, only: lp, wp
+  use mpm_level_set, only: level_set_t
   use mpm_point_cells, only: point_cells_t
+  use mpm_point_exchange, only: add_reserve
   use mpm_properties, only: properties_t
-  use mpm_quadrature_settings, only: add_quadrature_properties, newton_shift, &
-                                     no_correction, quadrature_settings_t, speed_shift, &
-                                     sph_shift, strain_shift
+  use mpm_quadrature_settings, only: add_quadrature_properties, avoid_a_void, &
+                                     newton_shift, no_correction, quadrature_settings_t, &
+                                     speed_shift, sph_shift, strain_shift
   use mpm_sph_shift, only: correct_as_sph, neighbour_distance
   use mpm_volume_overshoot, only: gradients_at, measure_overshoot, overshoot_t
   use mpm_window, only: window_t
@@ -28,6 +31,9 @@ module mpm_improved_quadrature_points
     class(grid_t), allocatable :: grid
     !> Time since the last correction. [s]
     real(wp) :: elapsed = 0.0_wp
+    !> Whether a point that is inactive may be inserted somewhere, by its number; only in position
+    !! rule 1. (n)
+    logical, allocatable :: may_return(:)
   contains
     procedure, nopass :: describe => improved_quadrature_points_describe
     procedure :: init => improved_quadrature_points_init
@@ -37,6 +43,8 @@ module mpm_improved_quadrature_points
     procedure :: write_node_fields => improved_quadrature_points_write_node_fields
     !> Take the rules, and what they need beside the table.
     procedure :: adopt => improved_quadrature_points_adopt
+    procedure, private :: take_reserve
+    procedure, private :: measure_level
   end type improved_quadrature_points_t
 
 contains
@@ -105,7 +113,11 @@ contains
                              'use a grid such as CartesianCustom, or remove the flag')
       return
     end if
-    if (self%settings%rule == sph_shift) then
+    if (self%settings%rule == avoid_a_void .and. grid%kin%dim == 1) then
+      call properties%reject('position', 'position rule 1 needs two or three dimensions', error, &
+                             'in TYPE 1 there is no room beside a point: use another rule')
+      return
+    else if (self%settings%rule == avoid_a_void .or. self%settings%rule == sph_shift) then
       call cells%init(grid, neighbour_distance(self%settings%r), message)
       if (allocated(message)) then
         call properties%reject('position', message, error, 'neighbours are looked for at distances &
@@ -114,6 +126,10 @@ contains
       end if
     end if
     allocate (self%grid, source=grid)
+    if (self%settings%rule == avoid_a_void) then
+      call self%take_reserve()
+      return
+    end if
     if (self%settings%rule < sph_shift) return
     allocate (self%shifted(self%kin%dim, self%n), source=0.0_wp)
     self%needs_gradient = self%settings%corrects_velocity .or. self%settings%rule == strain_shift &
@@ -122,6 +138,22 @@ contains
       allocate (self%gradient(self%kin%ngrad, self%n), source=0.0_wp)
     end if
   end subroutine improved_quadrature_points_adopt
+
+  !> Put points in reserve behind those of the table.
+  subroutine take_reserve(self)
+    !> The points, read.
+    class(improved_quadrature_points_t), intent(inout) :: self
+    integer :: n, n_more
+
+    n = self%n
+    n_more = ceiling(min(self%settings%buffer*real(n, wp), real(huge(1) - n, wp)))
+    allocate (self%may_return(n + n_more))
+    self%may_return = .true.
+    ! What the table says to be inactive stays so.
+    self%may_return(self%id(self%n_inside + 1:)) = .false.
+    call add_reserve(self, n_more)
+    self%x(:, n + 1:) = spread(self%x(:, n), 2, n_more)
+  end subroutine take_reserve
 
   !> Correct positions at the end of a step.
   subroutine improved_quadrature_points_correct(self, step, dt, threads)
@@ -140,6 +172,8 @@ contains
     ! Points that left the grid in this step take no part.
     call self%refresh_order()
     select case (self%settings%rule)
+    case (avoid_a_void)
+      call insert_and_merge(self, self%grid, self%settings, step, self%may_return)
     case (sph_shift)
       call correct_as_sph(self, self%grid, self%settings, self%elapsed, threads)
     case (strain_shift, speed_shift, newton_shift)
@@ -156,7 +190,9 @@ contains
     !> Receiver of point fields.
     class(field_writer_t), intent(inout) :: writer
     type(overshoot_t) :: overshoot
-    real(wp), allocatable :: gradient(:, :)
+    type(level_set_t) :: level
+    real(wp), allocatable :: gradient(:, :), distance(:)
+    integer :: p
 
     call self%default_points_t%write_fields(writer)
     allocate (gradient(self%kin%dim, self%n), source=0.0_wp)
@@ -166,7 +202,30 @@ contains
     call gradients_at(self, overshoot, overshoot%excess, 1, gradient)
     call writer%vector('grad_H', gradient)
     if (allocated(self%shifted)) call writer%vector('del_pos', self%shifted)
+    if (self%settings%rule /= avoid_a_void) return
+    call self%measure_level(level)
+    allocate (distance(self%n), source=0.0_wp)
+    do p = 1, self%n_inside
+      distance(p) = level%at(self%x(:, p))
+    end do
+    call writer%scalar('point_dist', distance)
   end subroutine improved_quadrature_points_write_fields
+
+  !> Distance of the nodes to the surface of the points, for a frame.
+  subroutine measure_level(self, level)
+    !> The points.
+    class(improved_quadrature_points_t), intent(in) :: self
+    !> The distances.
+    type(level_set_t), intent(out) :: level
+    type(point_cells_t) :: cells
+    character(:), allocatable :: message
+    integer :: p
+
+    call cells%init(self%grid, 2.0_wp*self%settings%r, message)
+    call cells%fill([(p, p=1, self%n_inside)], self%x)
+    call level%init(self%grid, self%n_inside, self%x)
+    call level%measure(cells, self%x, self%settings%r)
+  end subroutine measure_level
 
   !> Send nodal fields of a frame.
   subroutine improved_quadrature_points_write_node_fields(self, writer)
@@ -175,6 +234,7 @@ contains
     !> Receiver of nodal fields.
     class(field_writer_t), intent(inout) :: writer
     type(overshoot_t) :: overshoot
+    type(level_set_t) :: level
     type(window_t) :: whole
     real(wp), allocatable :: own(:)
     integer :: i
@@ -188,6 +248,9 @@ contains
     call measure_overshoot(self, self%grid, overshoot)
     call writer%scalar('err', overshoot%relative, overshoot%window)
     call writer%scalar('H', overshoot%excess, overshoot%window)
+    if (self%settings%rule /= avoid_a_void) return
+    call self%measure_level(level)
+    call writer%scalar('grid_dist', level%distance, level%window)
   end subroutine improved_quadrature_points_write_node_fields
 
   !> The quadrature rule decides, not the solver.

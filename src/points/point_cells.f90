@@ -134,7 +134,12 @@ contains
 
     cell = 0
     do d = 1, self%dim
-      cell(d) = max(0, min(int((x(d) - self%lower(d))/self%side(d)), self%n(d) - 1))
+      cell(d) = int((x(d) - self%lower(d))/self%side(d))
+      if (self%periodic(d)) then
+        cell(d) = modulo(cell(d), self%n(d))
+      else
+        cell(d) = max(0, min(cell(d), self%n(d) - 1))
+      end if
     end do
   end function point_cells_cell_of
 
