@@ -7,6 +7,7 @@ module mpm_points
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
   use mpm_document, only: value_t
+  use mpm_point_domains, only: point_domains_t
   use mpm_properties, only: properties_t
   use mpm_seam, only: wrap_points
   use mpm_sort, only: base_bounds, sort_by_cell
@@ -68,6 +69,9 @@ module mpm_points
     real(wp), allocatable :: reference_volume(:)
     !> Volume that the material sees, where it is not `volume`. [m3] (n)
     real(wp), allocatable :: smoothed_volume(:)
+    !> Domains over which functions are averaged; not allocated where the basis is that of
+    !! `stencil`.
+    type(point_domains_t), allocatable :: domains
     !> The basis between points and nodes.
     type(stencil_t) :: stencil
     !> Key of the stencil, or `outside`. (n)
@@ -257,6 +261,7 @@ contains
     if (allocated(self%affine)) call permute_vectors(order, self%affine)
     if (allocated(self%reference_volume)) call permute_scalars(order, self%reference_volume)
     if (allocated(self%smoothed_volume)) call permute_scalars(order, self%smoothed_volume)
+    if (allocated(self%domains)) call self%domains%permute(order)
   end subroutine points_permute
 
   !> Permute integers.
