@@ -141,7 +141,7 @@ contains
         return
       end if
       if (change%n_new == 0) call means%form(points, level)
-      call insert_point(points, cells, level, means, change, x)
+      call insert_point(points, settings%scale, cells, level, means, change, x)
     end do
   end subroutine insert
 
@@ -223,9 +223,11 @@ contains
   end function is_void
 
   !> Insert a point, to which its neighbours give equal parts.
-  subroutine insert_point(points, cells, level, means, change, x)
+  subroutine insert_point(points, scale, cells, level, means, change, x)
     !> The points.
     class(points_t), intent(inout) :: points
+    !> Side of a domain over that of the cube of the point's volume.
+    real(wp), intent(in) :: scale
     !> The points that were active before, in cells.
     type(point_cells_t), intent(in) :: cells
     !> Nodes around the points.
@@ -248,6 +250,9 @@ contains
         call donate(points, cells%point(k), slot, 1.0_wp/real(n + 1, wp))
       end do
     end do
+    if (allocated(points%domains)) then
+      call points%domains%set_box(points%kin, slot, scale, points%volume(slot), x)
+    end if
     call means%give(points, level, slot)
     change%active(slot) = .true.
     change%n_new = change%n_new + 1
@@ -313,7 +318,7 @@ contains
 
     if (self%n_new + self%n_merged == 0) return
     call points%permute([pack([(p, p=1, points%n)], self%active), &
-                         pack([(p, p=1, points%n)], .not. self%active)])
+                         pack([(p, p=1, points%n)],.not. self%active)])
     points%n_inside = count(self%active)
     call points%locate(points%stencil)
   end subroutine change_finish

@@ -65,6 +65,12 @@ contains
     call add_quadrature_properties(description)
     call description%add_note('The table is that of DefaultPoints. The solver''s flag cpdi has no &
                               &effect on these points.')
+    call description%add_note('One integer is enough: position rule 0, no files of corners.')
+    call description%add_note('Entries without names follow the order of mpm_3d, in which a scale of &
+                              &quadrature 1 comes before the numbers of the position rule; a list &
+                              &that is one too short is an error.')
+    call description%add_note('Results do not depend on the number of threads; random directions &
+                              &depend on the seed, the step and the place alone.')
   end subroutine improved_quadrature_points_describe
 
   !> Read the points.
@@ -83,11 +89,6 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call self%settings%read(properties, error)
-    if (allocated(error)) return
-    if (self%settings%quadrature > 0) then
-      call properties%reject('quadrature', 'quadrature 1 to 4 are not connected yet', error, &
-                             'use quadrature 0')
-    end if
     if (allocated(error)) return
     call self%default_points_t%init(grid, properties, point_file, config_file, error)
     if (.not. allocated(error)) call self%adopt(grid, properties, error)
@@ -126,9 +127,12 @@ contains
       end if
     end if
     allocate (self%grid, source=grid)
-    if (self%settings%rule == avoid_a_void) then
-      call self%take_reserve()
-      return
+    if (self%settings%rule == avoid_a_void) call self%take_reserve()
+    if (self%settings%quadrature > 0) then
+      allocate (self%domains)
+      call self%domains%init(self%kin, self%settings%quadrature, self%settings%scale, self%volume, &
+                             self%x)
+      if (len(self%settings%folder) > 0) self%domains%folder = self%settings%folder
     end if
     if (self%settings%rule < sph_shift) return
     allocate (self%shifted(self%kin%dim, self%n), source=0.0_wp)
@@ -253,7 +257,7 @@ contains
     call writer%scalar('grid_dist', level%distance, level%window)
   end subroutine improved_quadrature_points_write_node_fields
 
-  !> The quadrature rule decides, not the solver.
+  !> Functions at the points, or means over domains: the flag of the solver has no effect.
   pure function improved_quadrature_points_averages(self, cpdi) result(averages)
     !> The points.
     class(improved_quadrature_points_t), intent(in) :: self
@@ -262,9 +266,9 @@ contains
     !> Whether the functions are averaged over the corners of the points' boxes.
     logical :: averages
 
-    associate (unused => cpdi)
+    associate (unused => self, unused_cpdi => cpdi)
     end associate
-    averages = self%settings%quadrature == 1
+    averages = .false.
   end function improved_quadrature_points_averages
 
 end module mpm_improved_quadrature_points

@@ -135,6 +135,12 @@ contains
     real(wp), intent(in) :: part
     real(wp) :: gift, momentum(points%kin%nvel), arm(points%kin%nvel), dim
 
+    if (allocated(points%domains)) then
+      if (points%volume(to) > 0.0_wp) then
+        call points%domains%resize(to, 1.0_wp + part*points%volume(from)/points%volume(to))
+      end if
+      call points%domains%resize(from, 1.0_wp - part)
+    end if
     gift = part*points%mass(from)
     ! In TYPE 4 the third component carries angular momentum.
     arm = 1.0_wp

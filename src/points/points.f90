@@ -7,6 +7,7 @@ module mpm_points
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
   use mpm_document, only: value_t
+  use mpm_point_domains, only: point_domains_t
   use mpm_properties, only: properties_t
   use mpm_seam, only: widen_at_seam, wrap_points
   use mpm_sort, only: base_bounds, sort_by_cell
@@ -76,6 +77,9 @@ module mpm_points
     logical :: needs_gradient = .false.
     !> What the points have to tell the user, once; not allocated when there is nothing.
     character(:), allocatable :: remark
+    !> Domains over which functions are averaged; not allocated where the basis is that of
+    !! `stencil`.
+    type(point_domains_t), allocatable :: domains
     !> The basis between points and nodes.
     type(stencil_t) :: stencil
     !> Key of the stencil, or `outside`. (n)
@@ -115,7 +119,7 @@ module mpm_points
     procedure :: permute => points_permute
     !> Storage slot of each point of the points file.
     procedure :: slots => points_slots
-    !> The nodes that the points reach.
+    !> The nodes that the stencils of the points reach.
     procedure :: reach => points_reach
   end type points_t
 
@@ -162,7 +166,7 @@ contains
     end associate
   end subroutine points_write_table
 
-  !> Most points do as the solver says.
+  !> Most points do as the solver says; domains have means of their own.
   pure function points_averages(self, cpdi) result(averages)
     !> The points.
     class(points_t), intent(in) :: self
@@ -171,9 +175,7 @@ contains
     !> Whether the functions are averaged over the corners of the points' boxes.
     logical :: averages
 
-    associate (unused => self)
-    end associate
-    averages = cpdi
+    averages = cpdi .and. .not. allocated(self%domains)
   end function points_averages
 
   !> Most points stay where their motion takes them.
@@ -314,6 +316,7 @@ contains
     if (allocated(self%reference_volume)) call permute_scalars(order, self%reference_volume)
     if (allocated(self%smoothed_volume)) call permute_scalars(order, self%smoothed_volume)
     if (allocated(self%shifted)) call permute_vectors(order, self%shifted)
+    if (allocated(self%domains)) call self%domains%permute(order)
   end subroutine points_permute
 
   !> Permute integers.
@@ -377,7 +380,8 @@ contains
     end do
   end function points_slots
 
-  !> The nodes that the points reach, with ghosts at seams; none when no point is inside.
+  !> The nodes that the stencils of the points reach, with ghosts at seams; none when no point is
+  !! inside.
   pure function points_reach(self) result(window)
     !> The points.
     class(points_t), intent(in) :: self

@@ -9,6 +9,7 @@ module mpm_volume_overshoot
   use mpm_kinematics, only: type_axisymmetric
   use mpm_momentum, only: add_momentum
   use mpm_nodal_volume, only: nodal_volume
+  use mpm_point_domains, only: point_domains_t
   use mpm_points, only: points_t
   use mpm_seam, only: copy_to_ghosts
   use mpm_stencil, only: axis_fraction, block_size, outside
@@ -28,6 +29,8 @@ module mpm_volume_overshoot
     real(wp), allocatable :: excess(:)
     !> The same over the volume of the node. (nn)
     real(wp), allocatable :: relative(:)
+    !> The domains of the points, with lists of their nodes; only of points that have domains.
+    type(point_domains_t), allocatable :: domains
   end type overshoot_t
 
 contains
@@ -45,10 +48,15 @@ contains
     real(wp), allocatable :: filled(:)
     integer :: i, n
 
-    overshoot%window = points%reach()
-    n = overshoot%window%size()
-    allocate (filled(n), overshoot%own(n), overshoot%excess(n), overshoot%relative(n))
-    call fill_nodes(points, overshoot%window, filled, threads)
+    if (allocated(points%domains)) then
+      call fill_by_domains(points, overshoot, filled, threads)
+    else
+      overshoot%window = points%reach()
+      allocate (filled(overshoot%window%size()))
+      call fill_nodes(points, overshoot%window, filled, threads)
+    end if
+    n = size(filled)
+    allocate (overshoot%own(n), overshoot%excess(n), overshoot%relative(n))
     do i = 1, n
       overshoot%own(i) = grid%node_volume(overshoot%window%node(i))
       overshoot%excess(i) = max(0.0_wp, filled(i) - overshoot%own(i))
@@ -88,6 +96,43 @@ contains
     end if
   end subroutine fill_nodes
 
+  !> Volume as nodes see it of points with domains, which are kept with the lists of their nodes.
+  subroutine fill_by_domains(points, overshoot, filled, threads)
+    !> The points.
+    class(points_t), intent(in) :: points
+    !> Receives the window and the domains.
+    type(overshoot_t), intent(inout) :: overshoot
+    !> Volumes. [m3] (nn)
+    real(wp), allocatable, intent(out) :: filled(:)
+    !> Number of threads; one when left out.
+    integer, intent(in), optional :: threads
+    real(wp), allocatable :: sums(:, :), volume(:)
+    integer :: n, workers
+
+    n = points%n_inside
+    workers = 1
+    if (present(threads)) workers = useful_threads(threads, n)
+    allocate (overshoot%domains)
+    associate (domains => overshoot%domains)
+      ! All but the lists, which belong to the positions of the last mapping.
+      domains%rule = points%domains%rule
+      domains%dim = points%domains%dim
+      domains%side = points%domains%side
+      if (allocated(points%domains%stretch)) domains%stretch = points%domains%stretch
+      if (allocated(points%domains%corner)) domains%corner = points%domains%corner
+      call domains%place(points%stencil, workers, n, points%x(:, :n), overshoot%window)
+      allocate (sums(1, overshoot%window%size()), source=0.0_wp)
+      if (n > 0) then
+        call domains%make_lists(points%kin, points%stencil, workers, n, points%x(:, :n), &
+                                overshoot%window)
+        allocate (volume, source=shared_volume(points, 1, n))
+        where (points%key(:n) == outside) volume = 0.0_wp
+        call domains%list%add_values(workers, 1, volume, sums)
+      end if
+    end associate
+    allocate (filled, source=sums(1, :))
+  end subroutine fill_by_domains
+
   !> What points share out among nodes: their volumes, in TYPE 4 their areas in the meridian plane.
   pure function shared_volume(points, first, last) result(volume)
     !> The points.
@@ -122,6 +167,15 @@ contains
     integer :: first
 
     if (points%n_inside == 0) return
+    if (allocated(overshoot%domains)) then
+      !$omp parallel do default(none) schedule(static) shared(points, overshoot, field, gradient) &
+      !$omp num_threads(useful_threads(threads, points%n_inside)) private(first)
+      do first = 1, points%n_inside, block_size
+        call gradients_by_lists(points, overshoot%domains, field, first, gradient)
+      end do
+      !$omp end parallel do
+      return
+    end if
     allocate (values(points%kin%nvel, size(field)), source=0.0_wp)
     values(1, :) = field
     if (any(points%stencil%periodic)) then
@@ -134,6 +188,27 @@ contains
     end do
     !$omp end parallel do
   end subroutine gradients_at
+
+  !> Gradients at one block of points with domains.
+  subroutine gradients_by_lists(points, domains, field, first, gradient)
+    !> The points.
+    class(points_t), intent(in) :: points
+    !> Their domains, with lists.
+    type(point_domains_t), intent(in) :: domains
+    !> Values at the nodes. (nn)
+    real(wp), intent(in) :: field(:)
+    !> First slot of the block.
+    integer, intent(in) :: first
+    !> Gradients. (dim, n_inside)
+    real(wp), intent(inout) :: gradient(:, :)
+    integer :: p, last
+
+    last = min(first + block_size - 1, points%n_inside)
+    call domains%list%gradients_at(first, last, field, gradient(:, first:last))
+    do p = first, last
+      if (points%key(p) == outside) gradient(:, p) = 0.0_wp
+    end do
+  end subroutine gradients_by_lists
 
   !> Gradients at one block of points.
   subroutine gradients_of_block(points, window, values, first, gradient)
