@@ -11,8 +11,8 @@ module mpm_cartesian_box_custom
   use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
   use mpm_kinematics, only: type_axisymmetric
-  use mpm_nodal_volume, only: nodal_volume
   use mpm_nodes, only: nodes_t
+  use mpm_point_maps, only: map_volume
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
   use mpm_window, only: window_t
@@ -196,15 +196,14 @@ contains
     class(points_t), intent(in) :: points
     !> The wall.
     type(box_wall_t), intent(inout) :: wall
-    logical :: by_points
+    logical :: by_points, per_radius
     integer :: hi(3), node(3), i, j, k, n
 
     by_points = faces%kin%sim_type == type_axisymmetric .and. axis_of(face) == 2
     call resize(wall%filled_area, wall%part%size())
     if (size(wall%filled_area) == 0) return
-    call nodal_volume(points%kin, points%stencil, wall%part, points%n_inside, &
-                      points%order(:points%n_inside), points%x, points%extent, points%volume, &
-                      .not. by_points, wall%filled_area)
+    per_radius = .not. by_points
+    call map_volume(points, wall%part, per_radius, wall%filled_area)
     if (by_points) then
       wall%filled_area = wall%filled_area/(0.5_wp*faces%h(2))
       return

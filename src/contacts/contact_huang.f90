@@ -8,8 +8,8 @@ module mpm_contact_huang
   use mpm_field_writer, only: field_writer_t
   use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
-  use mpm_mass_gradient, only: mass_gradient
   use mpm_nodes, only: nodes_t
+  use mpm_point_maps, only: map_mass_gradient
   use mpm_properties, only: properties_t
   use mpm_stencil, only: stencil_t
   use mpm_threads, only: useful_threads
@@ -258,15 +258,10 @@ contains
     !> Unit vectors, or 0 where the mass around is balanced. (nvel, nn)
     real(wp), intent(out) :: normal(:, :)
     real(wp) :: floor(size(normal, 2))
-    integer :: n, i, j, k, node(3), hi(3)
+    integer :: i, j, k, node(3), hi(3)
 
-    n = body%points%n_inside
-    associate (points => body%points)
-      call mass_gradient(points%kin, points%stencil, window, n, points%order(:n), &
-                         points%row_offset, points%lo(points%kin%dim), points%key(:n), &
-                         points%x(:, :n), points%extent(:n), points%mass(:n), normal)
-      if (level) call level_at_faces(points%stencil, window, normal)
-    end associate
+    call map_mass_gradient(body%points, window, normal)
+    if (level) call level_at_faces(body%points%stencil, window, normal)
     hi = window%hi()
     do k = window%lo(3), hi(3)
       do j = window%lo(2), hi(2)

@@ -136,6 +136,7 @@ contains
       if (allocated(points%smoothed_volume)) then
         bits = bits + storage_size(points%mass, lp)*size(points%mass, kind=lp)
       end if
+      if (allocated(points%domains)) bits = bits + 8_lp*points%domains%memory()
       bits = bits + storage_size(points%id, lp)*3_lp*size(points%id, kind=lp)
       bits = bits + storage_size(nodes%mass, lp)* &
              (size(nodes%mass, kind=lp) + size(nodes%momentum, kind=lp) &

@@ -3,18 +3,16 @@ module mpm_explicit_steps
   use mpm_advance, only: advance_points, turn_stress
   use mpm_body, only: body_t
   use mpm_errors, only: err_simulation, error_t, raise
-  use mpm_g2p, only: g2p
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
   use mpm_material, only: material_t
   use mpm_model, only: model_t
-  use mpm_momentum, only: add_momentum
   use mpm_nodes, only: nodes_t
   use mpm_phase_clock, only: phase_clock_t, phase_g2p, phase_material, phase_nodes, phase_p2g, &
                              phase_sort
   use mpm_point_blocks, only: sweep_block
+  use mpm_point_maps, only: interpolate_points, map_momentum, map_points
   use mpm_points, only: points_t
-  use mpm_scatter, only: scatter
   use mpm_seam, only: copy_to_ghosts, widen_at_seam, wrap_points
   use mpm_sort, only: base_bounds
   use mpm_stencil, only: block_size, stencil_keys, stencil_t
@@ -49,7 +47,8 @@ contains
     type(stencil_t) :: stencil
 
     associate (item => model%bodies(body)%body)
-      call model%grid%make_stencil(averaged, maxval(item%points%extent), stencil, error)
+      call model%grid%make_stencil(item%points%averages(averaged), maxval(item%points%extent), &
+                                   stencil, error)
       if (allocated(error)) then
         error%message = 'body "'//item%name//'": '//error%message
         error%file = item%points%file
@@ -77,7 +76,12 @@ contains
 
     if (present(clock)) call clock%enter(phase_nodes)
     dim = body%points%stencil%dim
-    if (body%points%hi(1) >= 0) then
+    if (allocated(body%points%domains)) then
+      call body%points%refresh_order()
+      n = body%points%n_inside
+      call body%points%domains%place(body%points%stencil, useful_threads(threads, n), n, &
+                                     body%points%x(:, :n), window)
+    else if (body%points%hi(1) >= 0) then
       window%lo = body%points%lo
       window%n = 1
       window%n(:dim) = body%points%hi(:dim) - body%points%lo(:dim) + body%points%stencil%width
@@ -99,16 +103,14 @@ contains
     n = body%points%n_inside
     if (n == 0) return
     associate (points => body%points, nodes => body%nodes)
-      call scatter(points%kin, body%points%stencil, window, useful_threads(threads, n), n, &
-                   points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
-                   points%extent(:n), points%mass(:n), points%volume(:n), &
-                   points%velocity(:, :n), points%stress(:, :n), nodes%mass, &
-                   nodes%momentum, nodes%force)
+      if (allocated(points%domains)) then
+        call points%domains%make_lists(points%kin, points%stencil, useful_threads(threads, n), n, &
+                                       points%x(:, :n), window)
+      end if
+      call map_points(points, window, threads, points%velocity(:, :n), points%stress(:, :n), &
+                      nodes%mass, nodes%momentum, nodes%force)
       if (allocated(points%affine)) then
-        call add_momentum(points%kin, points%stencil, window, useful_threads(threads, n), n, &
-                          points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
-                          points%extent(:n), points%mass(:n), nodes%momentum, &
-                          affine=points%affine(:, :n))
+        call map_momentum(points, window, threads, nodes%momentum, affine=points%affine(:, :n))
       end if
       if (present(clock)) call clock%enter(phase_nodes)
       call finish_mapping(points%kin%nvel, window%size(), threads, points%mass_cutoff, &
@@ -140,10 +142,7 @@ contains
     associate (kin => points%kin)
       allocate (mass(nodes), load(kin%nvel, nodes), unused(kin%nvel, nodes))
       allocate (stress(kin%nstress, n), source=0.0_wp)
-      call scatter(kin, points%stencil, window, useful_threads(threads, n), n, points%order(:n), &
-                   points%row_offset, points%key(:n), points%x(:, :n), points%extent(:n), &
-                   points%mass(:n), points%volume(:n), points%load(:, :n), stress, mass, load, &
-                   unused)
+      call map_points(points, window, threads, points%load(:, :n), stress, mass, load, unused)
     end associate
     do i = 1, nodes
       force(:, i) = force(:, i) + load(:, i)
@@ -266,7 +265,7 @@ contains
     type(sweep_t), intent(in), optional :: sweep
     integer, allocatable :: slot(:), cause(:)
     integer :: blocks, first_bad, i
-    logical :: with_stress
+    logical :: keep, with_stress
 
     associate (item => model%bodies(body)%body)
       call model%clock%enter(phase_g2p)
@@ -274,14 +273,15 @@ contains
       if (any(item%points%stencil%periodic)) call fill_ghosts(item, sweep)
       blocks = (item%points%n_inside + block_size - 1)/block_size
       allocate (slot(blocks), cause(blocks))
+      keep = keep_gradient .or. item%points%needs_gradient
       with_stress = allocated(item%material)
       if (present(keep_stress)) with_stress = with_stress .and. .not. keep_stress
       if (with_stress) then
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
-                          keep_gradient, slot, cause, model%clock, item%material, sweep)
+                          keep, slot, cause, model%clock, item%material, sweep)
       else
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
-                          keep_gradient, slot, cause, model%clock, sweep=sweep)
+                          keep, slot, cause, model%clock, sweep=sweep)
       end if
       first_bad = 0
       do i = 1, blocks
@@ -428,11 +428,18 @@ contains
       if (present(sweep)) then
         call sweep_block(points, nodes, stencil, sweep, dt, a, b, gradient, slot, material)
       else
-        call g2p(kin, stencil, nodes%window, n, points%key(a:b), points%x(:, a:b), &
-                 points%extent(a:b), nodes%velocity, nodes%increment, velocity, increment, gradient)
+        call interpolate_points(points, stencil, nodes%window, a, b, nodes%velocity, &
+                                nodes%increment, velocity, increment, gradient)
+        if (allocated(points%domains)) then
+          call points%domains%follow(kin, stencil, dt, a, n, points%x(:, a:b), nodes%velocity, &
+                                     gradient, velocity, strain=.true., drift=.true.)
+        end if
         call advance_points(kin, stencil, n, dt, velocity, increment, gradient, points%x(:, a:b), &
                             points%displacement(:, a:b), points%velocity(:, a:b), &
                             points%volume(a:b), slot)
+      end if
+      if (drift .and. slot == 0 .and. allocated(points%domains)) then
+        call points%domains%fit_volumes(kin, a, n, points%x(:, a:b), points%volume(a:b), slot)
       end if
       if (keep_gradient .and. strain) then
         points%gradient(:, a:b) = reshape(gradient(:kin%ngrad*n), [kin%ngrad, n])

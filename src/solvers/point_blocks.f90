@@ -6,6 +6,7 @@ module mpm_point_blocks
   use mpm_kinematics, only: type_axisymmetric
   use mpm_material, only: material_t
   use mpm_nodes, only: nodes_t
+  use mpm_point_maps, only: interpolate_points
   use mpm_points, only: points_t
   use mpm_stencil, only: axis_fraction, block_size, stencil_t
   use mpm_sweep, only: sweep_t
@@ -45,6 +46,10 @@ contains
     slot = 0
     call interpolate(points, nodes, stencil, sweep, a, b, velocity, gain, gradient)
     associate (kin => points%kin)
+      if (allocated(points%domains)) then
+        call points%domains%follow(kin, stencil, dt, a, n, points%x(:, a:b), nodes%velocity, &
+                                   gradient, velocity, sweep%strain, sweep%drift)
+      end if
       if (sweep%kick) then
         if (allocated(points%affine)) then
           call fit_velocities(points, nodes, stencil, a, b, gradient)
@@ -99,21 +104,17 @@ contains
     real(wp), intent(inout) :: gain(3*block_size)
     !> Velocity gradients. [1/s] (ngrad (b - a + 1))
     real(wp), intent(inout) :: gradient(9*block_size)
-    integer :: n
 
-    n = b - a + 1
-    associate (kin => points%kin)
-      if (sweep%remapped) then
-        call g2p(kin, stencil, nodes%window, n, points%key(a:b), points%x(:, a:b), &
-                 points%extent(a:b), nodes%remapped, nodes%velocity, gain, velocity, gradient)
-      else if (sweep%kick .and. allocated(nodes%gain)) then
-        call g2p(kin, stencil, nodes%window, n, points%key(a:b), points%x(:, a:b), &
-                 points%extent(a:b), nodes%velocity, nodes%gain, velocity, gain, gradient)
-      else
-        call g2p(kin, stencil, nodes%window, n, points%key(a:b), points%x(:, a:b), &
-                 points%extent(a:b), nodes%velocity, nodes%increment, velocity, gain, gradient)
-      end if
-    end associate
+    if (sweep%remapped) then
+      call interpolate_points(points, stencil, nodes%window, a, b, nodes%remapped, &
+                              nodes%velocity, gain, velocity, gradient)
+    else if (sweep%kick .and. allocated(nodes%gain)) then
+      call interpolate_points(points, stencil, nodes%window, a, b, nodes%velocity, nodes%gain, &
+                              velocity, gain, gradient)
+    else
+      call interpolate_points(points, stencil, nodes%window, a, b, nodes%velocity, &
+                              nodes%increment, velocity, gain, gradient)
+    end if
   end subroutine interpolate
 
   !> Fit affine fields of velocity to the nodes of all points of a body.

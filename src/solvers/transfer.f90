@@ -7,10 +7,9 @@ module mpm_transfer
   use mpm_body, only: body_t
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
-  use mpm_g2p, only: g2p
   use mpm_kinds, only: wp
-  use mpm_momentum, only: add_momentum
   use mpm_nodes, only: nodes_t
+  use mpm_point_maps, only: interpolate_points, map_momentum
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
   use mpm_seam, only: copy_to_ghosts
@@ -222,8 +221,8 @@ contains
     real(wp), contiguous, intent(inout) :: values(:, :)
     real(wp) :: unused(3*block_size), gradient(9*block_size)
 
-    call g2p(points%kin, points%stencil, nodes%window, b - a + 1, points%key(a:b), &
-             points%x(:, a:b), points%extent(a:b), field, field, values, unused, gradient)
+    call interpolate_points(points, points%stencil, nodes%window, a, b, field, field, values, &
+                            unused, gradient)
   end subroutine gather_block
 
   !> Map velocities of the points to nodal velocities: sum m_p N_i v_p/m_i.
@@ -244,14 +243,9 @@ contains
     mapped(:, :body%nodes%window%size()) = 0.0_wp
     associate (points => body%points, nodes => body%nodes)
       if (affine) then
-        call add_momentum(points%kin, points%stencil, nodes%window, useful_threads(threads, n), n, &
-                          points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
-                          points%extent(:n), points%mass(:n), mapped, velocity, &
-                          points%affine(:, :n))
+        call map_momentum(points, nodes%window, threads, mapped, velocity, points%affine(:, :n))
       else
-        call add_momentum(points%kin, points%stencil, nodes%window, useful_threads(threads, n), n, &
-                          points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
-                          points%extent(:n), points%mass(:n), mapped, velocity)
+        call map_momentum(points, nodes%window, threads, mapped, velocity)
       end if
       do i = 1, nodes%window%size()
         if (nodes%mass(i) > 0.0_wp) mapped(:, i) = mapped(:, i)/nodes%mass(i)

@@ -1,0 +1,210 @@
+!> Maps between the points of a body and its nodes, by the basis that the points have.
+!!
+!! Points with domains have lists of nodes (`mpm_node_list`), all others stencils (`mpm_stencil`).
+module mpm_point_maps
+  use mpm_g2p, only: g2p
+  use mpm_kinds, only: wp
+  use mpm_kinematics, only: type_axisymmetric
+  use mpm_mass_gradient, only: mass_gradient
+  use mpm_momentum, only: add_momentum
+  use mpm_nodal_volume, only: nodal_volume
+  use mpm_points, only: points_t
+  use mpm_scatter, only: scatter
+  use mpm_stencil, only: axis_fraction, stencil_t
+  use mpm_threads, only: useful_threads
+  use mpm_window, only: window_t
+  implicit none
+  private
+  public :: interpolate_points, map_mass_gradient, map_momentum, map_points, map_volume
+
+contains
+
+  !> Nodal mass, momentum and internal force of the points inside the grid.
+  subroutine map_points(points, window, threads, velocity, stress, node_mass, node_momentum, &
+                        node_force)
+    !> The points, with lists or sorted by cell.
+    class(points_t), intent(in) :: points
+    !> Window of the node arrays; holds all nodes of the points.
+    type(window_t), intent(in) :: window
+    !> Number of threads.
+    integer, intent(in) :: threads
+    !> Velocities that give the momenta. [m/s] (nvel, n_inside)
+    real(wp), contiguous, intent(in) :: velocity(:, :)
+    !> Stresses that give the forces. [Pa] (nstress, n_inside)
+    real(wp), contiguous, intent(in) :: stress(:, :)
+    !> Nodal masses. [kg] (nn)
+    real(wp), contiguous, intent(inout) :: node_mass(:)
+    !> Nodal momenta. [kg m/s] (nvel, nn)
+    real(wp), contiguous, intent(inout) :: node_momentum(:, :)
+    !> Nodal forces. [N] (nvel, nn)
+    real(wp), contiguous, intent(inout) :: node_force(:, :)
+    integer :: n
+
+    n = points%n_inside
+    if (allocated(points%domains)) then
+      call points%domains%list%scatter(points%kin, useful_threads(threads, n), points%mass, &
+                                       points%volume, velocity, stress, node_mass, node_momentum, &
+                                       node_force)
+    else
+      call scatter(points%kin, points%stencil, window, useful_threads(threads, n), n, &
+                   points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
+                   points%extent(:n), points%mass(:n), points%volume(:n), velocity, stress, &
+                   node_mass, node_momentum, node_force)
+    end if
+  end subroutine map_points
+
+  !> Add the momenta of the points inside the grid for given velocities.
+  subroutine map_momentum(points, window, threads, node_momentum, velocity, affine)
+    !> The points, with lists or sorted by cell.
+    class(points_t), intent(in) :: points
+    !> Window of the node arrays; holds all nodes of the points.
+    type(window_t), intent(in) :: window
+    !> Number of threads.
+    integer, intent(in) :: threads
+    !> Nodal momenta, added to; 0 at ghosts. [kg m/s] (nvel, nn)
+    real(wp), contiguous, intent(inout) :: node_momentum(:, :)
+    !> Velocities, 0 when left out. [m/s] (nvel, n_inside)
+    real(wp), contiguous, intent(in), optional :: velocity(:, :)
+    !> Gradients of the points' own velocities; not for points with domains. [1/s]
+    !! (nvel dim, n_inside)
+    real(wp), contiguous, intent(in), optional :: affine(:, :)
+    real(wp), allocatable :: momentum(:, :)
+    integer :: n, p
+
+    n = points%n_inside
+    if (.not. allocated(points%domains)) then
+      call add_momentum(points%kin, points%stencil, window, useful_threads(threads, n), n, &
+                        points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
+                        points%extent(:n), points%mass(:n), node_momentum, velocity, affine)
+    else if (present(velocity)) then
+      allocate (momentum(points%kin%nvel, n))
+      do p = 1, n
+        momentum(:, p) = points%mass(p)*velocity(:, p)
+      end do
+      call points%domains%list%add_values(useful_threads(threads, n), points%kin%nvel, momentum, &
+                                          node_momentum)
+    end if
+  end subroutine map_momentum
+
+  !> Interpolate to one block of points.
+  subroutine interpolate_points(points, stencil, window, a, b, node_velocity, node_increment, &
+                                velocity, increment, gradient)
+    !> The points.
+    class(points_t), intent(in) :: points
+    !> Basis of points without domains.
+    type(stencil_t), intent(in) :: stencil
+    !> Window of the node arrays; holds all nodes of the points.
+    type(window_t), intent(in) :: window
+    !> First slot.
+    integer, intent(in) :: a
+    !> Last slot; the kernels take blocks of at most `block_size` points.
+    integer, intent(in) :: b
+    !> Nodal velocities. [m/s] (nvel, nn)
+    real(wp), contiguous, intent(in) :: node_velocity(:, :)
+    !> Nodal velocity increments. [m/s] (nvel, nn)
+    real(wp), contiguous, intent(in) :: node_increment(:, :)
+    !> Velocity of the grid at the points. [m/s] (nvel, b - a + 1)
+    real(wp), intent(inout) :: velocity(points%kin%nvel*(b - a + 1))
+    !> Velocity increment at the points. [m/s] (nvel, b - a + 1)
+    real(wp), intent(inout) :: increment(points%kin%nvel*(b - a + 1))
+    !> Velocity gradient, components in the order of `kinematics_t`. [1/s] (ngrad, b - a + 1)
+    real(wp), intent(inout) :: gradient(points%kin%ngrad*(b - a + 1))
+
+    if (allocated(points%domains)) then
+      call points%domains%list%gather(points%kin, a, b, node_velocity, node_increment, velocity, &
+                                      increment, gradient)
+    else
+      call g2p(points%kin, stencil, window, b - a + 1, points%key(a:b), points%x(:, a:b), &
+               points%extent(a:b), node_velocity, node_increment, velocity, increment, gradient)
+    end if
+  end subroutine interpolate_points
+
+  !> N_i = sum_p m_p grad N_i(x_p) at the nodes of a part of the grid; in TYPE 4 with m_p/r_p.
+  subroutine map_mass_gradient(points, part, gradient)
+    !> The points, with lists or sorted by cell.
+    class(points_t), intent(in) :: points
+    !> The nodes wanted; where the points have lists, nodes of their window.
+    type(window_t), intent(in) :: part
+    !> Gradients, components beyond dim 0. [kg/m] (nvel, nn)
+    real(wp), intent(out) :: gradient(:, :)
+    real(wp), allocatable :: amount(:), sums(:, :)
+    integer :: n, dim
+
+    n = points%n_inside
+    dim = points%kin%dim
+    if (.not. allocated(points%domains)) then
+      call mass_gradient(points%kin, points%stencil, part, n, points%order(:n), &
+                         points%row_offset, points%lo(dim), points%key(:n), points%x(:, :n), &
+                         points%extent(:n), points%mass(:n), gradient)
+      return
+    end if
+    amount = points%mass(:n)
+    if (points%kin%sim_type == type_axisymmetric) then
+      amount = amount/max(points%x(1, :n), axis_fraction*points%stencil%h(1))
+    end if
+    gradient = 0.0_wp
+    associate (domains => points%domains)
+      allocate (sums(dim, domains%window%size()), source=0.0_wp)
+      call domains%list%add_gradients(1, amount, sums)
+      call copy_part(dim, domains%window, sums, part, gradient)
+    end associate
+  end subroutine map_mass_gradient
+
+  !> Volume of the points at the nodes of a part of the grid, sum_p S_ip V_p.
+  subroutine map_volume(points, part, per_radius, node_volume)
+    !> The points, with lists or sorted by cell.
+    class(points_t), intent(in) :: points
+    !> The nodes that are asked for.
+    type(window_t), intent(in) :: part
+    !> TYPE 4: count the meridian areas V_p/r_p instead of the volumes per radian.
+    logical, intent(in) :: per_radius
+    !> Volumes at the nodes of `part`. [m3] (part%size())
+    real(wp), intent(out) :: node_volume(:)
+    real(wp), allocatable :: amount(:), sums(:, :), wanted(:, :)
+    integer :: n
+
+    n = points%n_inside
+    if (.not. allocated(points%domains)) then
+      call nodal_volume(points%kin, points%stencil, part, n, points%order(:n), points%x, &
+                        points%extent, points%volume, per_radius, node_volume)
+      return
+    end if
+    amount = points%volume(:n)
+    if (per_radius .and. points%kin%sim_type == type_axisymmetric) then
+      amount = amount/max(points%x(1, :n), axis_fraction*points%stencil%h(1))
+    end if
+    associate (domains => points%domains)
+      allocate (sums(1, domains%window%size()), wanted(1, size(node_volume)), source=0.0_wp)
+      call domains%list%add_values(1, 1, amount, sums)
+      call copy_part(1, domains%window, sums, part, wanted)
+    end associate
+    node_volume = wanted(1, :)
+  end subroutine map_volume
+
+  !> Copy the values of the nodes that two windows share.
+  pure subroutine copy_part(components, window, values, part, wanted)
+    !> Components of a value.
+    integer, intent(in) :: components
+    !> Window of the values.
+    type(window_t), intent(in) :: window
+    !> Values. (components, nn)
+    real(wp), intent(in) :: values(:, :)
+    !> The other window.
+    type(window_t), intent(in) :: part
+    !> Its values; those of other nodes stay, as do further components. (any, nn)
+    real(wp), intent(inout) :: wanted(:, :)
+    integer :: i, j, k, hi(3)
+
+    hi = part%hi()
+    do k = part%lo(3), hi(3)
+      do j = part%lo(2), hi(2)
+        do i = part%lo(1), hi(1)
+          if (.not. window%holds([i, j, k])) cycle
+          wanted(:components, part%index([i, j, k])) = &
+            values(:components, window%index([i, j, k]))
+        end do
+      end do
+    end do
+  end subroutine copy_part
+
+end module mpm_point_maps
