@@ -494,7 +494,7 @@ contains
     call store%get('displacement', self%displacement)
     call store%get('velocity', self%velocity)
     call store%get('stress', self%stress)
-    if (store%has('history')) call store%get('history', self%history)
+    if (size(self%history, 1) > 0) call store%get('history', self%history)
     if (store%has('gradient')) call store%get('gradient', self%gradient)
     if (store%has('load')) call store%get('load', self%load)
     if (store%has('affine')) call store%get('affine', self%affine)
