@@ -87,6 +87,8 @@ contains
     else if (property%kind == kind_integer .and. &
              real(property%default_integer, wp) < property%lower) then
       text = text//', optional'
+    else if (property%kind == kind_real .and. property%default_real < property%lower) then
+      text = text//', optional'
     else
       select case (property%kind)
       case (kind_real)

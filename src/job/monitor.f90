@@ -42,6 +42,8 @@ module mpm_monitor
     logical, private :: shows_progress = .false.
     !> Whether a body has been warned of.
     logical, allocatable, private :: warned(:)
+    !> Whether the remark of a body's points has been told.
+    logical, allocatable, private :: told(:)
     !> Lost points that have been reported.
     integer, private :: lost_reported = 0
     !> Sum over the steps of the points inside the grid.
@@ -63,6 +65,8 @@ module mpm_monitor
     procedure :: warn => monitor_warn
     !> Take the progress line off the terminal.
     procedure :: clear_line => monitor_clear_line
+    !> Tell the remark of a body's points, once.
+    procedure, private :: tell => monitor_tell
     !> Seconds since the start of the loop.
     procedure, private :: elapsed => monitor_elapsed
   end type monitor_t
@@ -88,8 +92,9 @@ contains
     call measure(model, self%at_start)
     self%shows_progress = is_terminal(standard_output)
     if (self%verbosity /= normal) self%shows_progress = .false.
-    allocate (self%warned(size(model%bodies)))
+    allocate (self%warned(size(model%bodies)), self%told(size(model%bodies)))
     self%warned = .false.
+    self%told = .false.
     do i = 1, size(model%bodies)
       if (model%bodies(i)%body%points%n_inside > 0) cycle
       call self%warn('body "'//model%bodies(i)%body%name//'" has no active point')
@@ -116,6 +121,7 @@ contains
     lost = 0
     do i = 1, size(model%bodies)
       lost = lost + model%bodies(i)%body%points%n_lost
+      call self%tell(model, i)
       if (self%warned(i) .or. .not. self%fixed_step) cycle
       call solver%stable_step(model, i, speed, limit)
       if (model%dt <= limit) cycle
@@ -130,6 +136,22 @@ contains
                      ' left the grid by t = '//to_text(model%time)//' s (no longer active)')
     end if
   end subroutine monitor_check
+
+  !> Tell the remark of a body's points, once.
+  subroutine monitor_tell(self, model, body)
+    !> The monitor.
+    class(monitor_t), intent(inout) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> Position of the body.
+    integer, intent(in) :: body
+
+    associate (item => model%bodies(body)%body)
+      if (self%told(body) .or. .not. allocated(item%points%remark)) return
+      self%told(body) = .true.
+      call self%warn('body "'//item%name//'": '//item%points%remark)
+    end associate
+  end subroutine monitor_tell
 
   !> A frame has been written.
   subroutine monitor_frame(self, model, frames)
@@ -209,6 +231,7 @@ contains
     lost = 0
     do i = 1, size(model%bodies)
       lost = lost + model%bodies(i)%body%points%n_lost
+      call self%tell(model, i)
     end do
     if (lost > 0) call self%say('points that left the grid: '//to_text(lost))
     call self%say('frames: '//to_text(serializer%frames)//' in '//serializer%destination()// &

@@ -15,6 +15,8 @@ module mpm_window
     procedure :: size => window_size
     !> Position of a node in the window's arrays.
     procedure :: index => window_index
+    !> Node at a position in the window's arrays.
+    procedure :: node => window_node
     !> Position before a node in the window's arrays.
     procedure :: start => window_start
     !> Highest node index in each direction.
@@ -48,6 +50,23 @@ contains
     d = node - self%lo
     position = 1 + d(1) + self%n(1)*(d(2) + self%n(2)*d(3))
   end function window_index
+
+  !> Node at a position in the window's arrays.
+  pure function window_node(self, position) result(node)
+    !> The window.
+    class(window_t), intent(in) :: self
+    !> Position, from 1.
+    integer, intent(in) :: position
+    !> Grid indices of the node, from 0.
+    integer :: node(3)
+    integer :: rest
+
+    rest = position - 1
+    node(1) = self%lo(1) + mod(rest, self%n(1))
+    rest = rest/self%n(1)
+    node(2) = self%lo(2) + mod(rest, self%n(2))
+    node(3) = self%lo(3) + rest/self%n(2)
+  end function window_node
 
   !> Position before a node in the window's arrays: that of the node, less one.
   pure function window_start(self, node) result(position)

@@ -327,8 +327,10 @@ contains
       scalar(p) = -(self%stress(1, p) + self%stress(2, p) + self%stress(3, p))/3.0_wp
     end do
     call writer%scalar('pressure', scalar)
+    scalar = 0.0_wp
     do p = 1, self%n
-      scalar(p) = self%mass(p)/self%volume(p)
+      ! Points in reserve have neither.
+      if (self%volume(p) > 0.0_wp) scalar(p) = self%mass(p)/self%volume(p)
     end do
     call writer%scalar('density', scalar)
   end subroutine default_points_write_fields

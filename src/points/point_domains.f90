@@ -63,6 +63,8 @@ module mpm_point_domains
     procedure :: init => point_domains_init
     !> An undeformed box for one point.
     procedure :: set_box => point_domains_set_box
+    !> Give the domain of a point another volume.
+    procedure :: resize => point_domains_resize
     !> Put all arrays into another order.
     procedure :: permute => point_domains_permute
     !> Corners of a domain.
@@ -164,6 +166,23 @@ contains
       continue
     end select
   end subroutine point_domains_set_box
+
+  !> Give the domain of a point another volume and the same shape.
+  pure subroutine point_domains_resize(self, slot, factor)
+    !> The domains.
+    class(point_domains_t), intent(inout) :: self
+    !> Slot of the point.
+    integer, intent(in) :: slot
+    !> The new volume over the old one.
+    real(wp), intent(in) :: factor
+    real(wp) :: length
+
+    length = factor**(1.0_wp/real(self%dim, wp))
+    self%side(slot) = length*self%side(slot)
+    if (.not. allocated(self%corner)) return
+    self%corner(:, slot) = length*self%corner(:, slot)
+    self%content(slot) = factor*self%content(slot)
+  end subroutine point_domains_resize
 
   !> Put all arrays into another order: slot i receives what was in slot order(i).
   pure subroutine point_domains_permute(self, order)

@@ -4,14 +4,15 @@ module mpm_points
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
   use mpm_grid, only: grid_t
-  use mpm_kinds, only: wp
+  use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
   use mpm_document, only: value_t
   use mpm_point_domains, only: point_domains_t
   use mpm_properties, only: properties_t
-  use mpm_seam, only: wrap_points
+  use mpm_seam, only: widen_at_seam, wrap_points
   use mpm_sort, only: base_bounds, sort_by_cell
   use mpm_stencil, only: outside, stencil_keys, stencil_t
+  use mpm_window, only: window_t
   implicit none
   private
   public :: points_t
@@ -69,6 +70,13 @@ module mpm_points
     real(wp), allocatable :: reference_volume(:)
     !> Volume that the material sees, where it is not `volume`. [m3] (n)
     real(wp), allocatable :: smoothed_volume(:)
+    !> Sums of the shifts that were no motion of the material; not allocated unless positions are
+    !! corrected. [m] (dim, n)
+    real(wp), allocatable :: shifted(:, :)
+    !> The velocity gradients of every step are kept.
+    logical :: needs_gradient = .false.
+    !> What the points have to tell the user, once; not allocated when there is nothing.
+    character(:), allocatable :: remark
     !> Domains over which functions are averaged; not allocated where the basis is that of
     !! `stencil`.
     type(point_domains_t), allocatable :: domains
@@ -95,6 +103,12 @@ module mpm_points
     procedure(write_fields_i), deferred :: write_fields
     !> Write what the config asks to keep of the points, when the run begins.
     procedure :: write_table => points_write_table
+    !> Whether the functions are averaged over the corners of the points' boxes.
+    procedure :: averages => points_averages
+    !> Correct positions at the end of a step.
+    procedure :: correct => points_correct
+    !> Send nodal fields of the points for a frame.
+    procedure :: write_node_fields => points_write_node_fields
     !> Give all arrays their length.
     procedure :: allocate => points_allocate
     !> Take a basis and find the keys of all points.
@@ -105,6 +119,8 @@ module mpm_points
     procedure :: permute => points_permute
     !> Storage slot of each point of the points file.
     procedure :: slots => points_slots
+    !> The nodes that the stencils of the points reach.
+    procedure :: reach => points_reach
   end type points_t
 
   abstract interface
@@ -149,6 +165,44 @@ contains
     associate (unused => self)
     end associate
   end subroutine points_write_table
+
+  !> Most points do as the solver says; domains have means of their own.
+  pure function points_averages(self, cpdi) result(averages)
+    !> The points.
+    class(points_t), intent(in) :: self
+    !> What the solver asks for.
+    logical, intent(in) :: cpdi
+    !> Whether the functions are averaged over the corners of the points' boxes.
+    logical :: averages
+
+    averages = cpdi .and. .not. allocated(self%domains)
+  end function points_averages
+
+  !> Most points stay where their motion takes them.
+  subroutine points_correct(self, step, dt, threads)
+    !> The points, moved, with the velocity gradients of the step if they need them.
+    class(points_t), intent(inout) :: self
+    !> Number of the step, from 1.
+    integer(lp), intent(in) :: step
+    !> Its length. [s]
+    real(wp), intent(in) :: dt
+    !> Number of threads.
+    integer, intent(in) :: threads
+
+    associate (unused => self, unused_step => step, unused_dt => dt, unused_threads => threads)
+    end associate
+  end subroutine points_correct
+
+  !> Most points have no nodal fields.
+  subroutine points_write_node_fields(self, writer)
+    !> The points.
+    class(points_t), intent(in) :: self
+    !> Receiver of nodal fields.
+    class(field_writer_t), intent(inout) :: writer
+
+    associate (unused => self, unused_writer => writer)
+    end associate
+  end subroutine points_write_node_fields
 
   !> Give all arrays their length; everything is 0 and in the order of the points file.
   subroutine points_allocate(self, kin, n)
@@ -261,6 +315,7 @@ contains
     if (allocated(self%affine)) call permute_vectors(order, self%affine)
     if (allocated(self%reference_volume)) call permute_scalars(order, self%reference_volume)
     if (allocated(self%smoothed_volume)) call permute_scalars(order, self%smoothed_volume)
+    if (allocated(self%shifted)) call permute_vectors(order, self%shifted)
     if (allocated(self%domains)) call self%domains%permute(order)
   end subroutine points_permute
 
@@ -324,5 +379,22 @@ contains
       slot(self%id(p)) = p
     end do
   end function points_slots
+
+  !> The nodes that the stencils of the points reach, with ghosts at seams; none when no point is
+  !! inside.
+  pure function points_reach(self) result(window)
+    !> The points.
+    class(points_t), intent(in) :: self
+    !> Box of the nodes.
+    type(window_t) :: window
+
+    if (self%hi(1) < 0) return
+    window%lo = self%lo
+    window%n = 1
+    associate (dim => self%stencil%dim)
+      window%n(:dim) = self%hi(:dim) - self%lo(:dim) + self%stencil%width
+    end associate
+    call widen_at_seam(self%stencil, window)
+  end function points_reach
 
 end module mpm_points

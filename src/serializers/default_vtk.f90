@@ -74,6 +74,7 @@ contains
         call body%boundary%write_fields(model%grid, body%nodes, writer)
       end if
       call model%grid%write_fields(writer)
+      if (allocated(body%points)) call body%points%write_node_fields(writer)
     end if
     if (.not. allocated(model%contacts)) return
     do i = 1, size(model%contacts)

@@ -76,6 +76,7 @@ contains
                          sweep=sweep_t(kick=.false., remapped=.true.))
       if (allocated(error)) return
     end do
+    call self%correct(model, dt)
   end subroutine explicit_musl_step
 
   !> Map the new velocities of the points to the nodes.

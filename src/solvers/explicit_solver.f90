@@ -36,6 +36,8 @@ module mpm_explicit_solver
     procedure :: map => explicit_solver_map
     !> Add the forces of contacts and walls, and update all nodes.
     procedure :: push => explicit_solver_push
+    !> Let the points of all bodies correct their positions.
+    procedure, nopass :: correct => explicit_solver_correct
   end type explicit_solver_t
 
 contains
@@ -195,5 +197,19 @@ contains
       end associate
     end do
   end subroutine explicit_solver_push
+
+  !> Let the points of all bodies correct their positions.
+  subroutine explicit_solver_correct(model, dt)
+    !> The model, its points advanced.
+    type(model_t), intent(inout) :: model
+    !> Length of the step. [s]
+    real(wp), intent(in) :: dt
+    integer :: i
+
+    do i = 1, size(model%bodies)
+      if (.not. model%bodies(i)%body%active) cycle
+      call model%bodies(i)%body%points%correct(model%step + 1, dt, model%threads)
+    end do
+  end subroutine explicit_solver_correct
 
 end module mpm_explicit_solver

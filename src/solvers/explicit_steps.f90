@@ -45,9 +45,8 @@ contains
     type(stencil_t) :: stencil
 
     associate (item => model%bodies(body)%body)
-      ! Domains have means of their own.
-      call model%grid%make_stencil(averaged .and. .not. allocated(item%points%domains), &
-                                   maxval(item%points%extent), stencil, error)
+      call model%grid%make_stencil(item%points%averages(averaged), maxval(item%points%extent), &
+                                   stencil, error)
       if (allocated(error)) then
         error%message = 'body "'//item%name//'": '//error%message
         error%file = item%points%file
@@ -258,21 +257,22 @@ contains
     type(sweep_t), intent(in), optional :: sweep
     integer, allocatable :: slot(:), cause(:)
     integer :: blocks, first_bad, i
-    logical :: with_stress
+    logical :: keep, with_stress
 
     associate (item => model%bodies(body)%body)
       if (item%points%n_inside == 0) return
       if (any(item%points%stencil%periodic)) call fill_ghosts(item, sweep)
       blocks = (item%points%n_inside + block_size - 1)/block_size
       allocate (slot(blocks), cause(blocks))
+      keep = keep_gradient .or. item%points%needs_gradient
       with_stress = allocated(item%material)
       if (present(keep_stress)) with_stress = with_stress .and. .not. keep_stress
       if (with_stress) then
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
-                          keep_gradient, slot, cause, item%material, sweep)
+                          keep, slot, cause, item%material, sweep)
       else
         call sweep_blocks(item%points, item%nodes, item%points%stencil, model%threads, dt, &
-                          keep_gradient, slot, cause, sweep=sweep)
+                          keep, slot, cause, sweep=sweep)
       end if
       first_bad = 0
       do i = 1, blocks

@@ -81,6 +81,7 @@ contains
                          sweep=sweep_t(strain=.false., kept=self%transfer%kept))
       if (allocated(error)) return
     end do
+    call self%correct(model, dt)
   end subroutine explicit_usf_step
 
   !> Largest stable time step of a body by linear theory.

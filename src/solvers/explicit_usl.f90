@@ -63,6 +63,7 @@ contains
       call self%advance_body(model, i, dt, keep_gradient, error)
       if (allocated(error)) return
     end do
+    call self%correct(model, dt)
   end subroutine explicit_usl_step
 
   !> Advance the points of a body with the grid, then their stress.

@@ -3,9 +3,7 @@ module mpm_volume_metrics
   use mpm_errors, only: err_io, error_t, raise
   use mpm_kinds, only: wp
   use mpm_model, only: model_t
-  use mpm_nodal_volume, only: nodal_volume
-  use mpm_seam, only: widen_at_seam
-  use mpm_window, only: window_t
+  use mpm_volume_overshoot, only: measure_overshoot, overshoot_t
   implicit none
   private
   public :: volume_metrics, write_volume_metrics
@@ -22,36 +20,24 @@ contains
     type(model_t), intent(in) :: model
     !> The five numbers.
     real(wp), intent(out) :: metrics(5)
-    type(window_t) :: window
-    real(wp), allocatable :: volume(:)
-    real(wp) :: excess, own
-    integer :: i, n, dim
+    type(overshoot_t) :: overshoot
+    real(wp) :: own
+    integer :: i, n
 
     metrics = 0.0_wp
     associate (points => model%bodies(1)%body%points, nodes => model%bodies(1)%body%nodes)
       n = points%n_inside
-      dim = model%kin%dim
       if (n == 0 .or. points%hi(1) < 0) return
-      window%lo = points%lo
-      window%n = 1
-      window%n(:dim) = points%hi(:dim) - points%lo(:dim) + points%stencil%width
-      call widen_at_seam(points%stencil, window)
-      allocate (volume(window%size()))
-      call nodal_volume(model%kin, points%stencil, window, n, points%order(:n), points%x, &
-                        points%extent, points%volume, .true., volume)
-      do i = 1, window%size()
-        own = model%grid%node_volume(node_of(window, i))
-        excess = max(0.0_wp, volume(i) - own)
-        metrics(1) = metrics(1) + excess**2
-        metrics(2) = max(metrics(2), excess/own)
-      end do
+      call measure_overshoot(points, model%grid, overshoot)
+      metrics(1) = sum(overshoot%excess**2)
+      metrics(2) = maxval(overshoot%relative)
       do i = 1, n
         metrics(3) = metrics(3) + 0.5_wp*points%mass(i)*sum(points%velocity(:, i)**2)
       end do
-      metrics(4) = dot_product(points%mass(:n), points%x(min(2, dim), :n))/sum(points%mass(:n))
+ metrics(4) = dot_product(points%mass(:n), points%x(min(2, model%kin%dim), :n))/sum(points%mass(:n))
       do i = 1, nodes%window%size()
         if (.not. nodes%mass(i) > 0.0_wp) cycle
-        own = model%grid%node_volume(node_of(nodes%window, i))
+        own = model%grid%node_volume(nodes%window%node(i))
         metrics(5) = metrics(5) + own*sum(nodes%velocity(:, i)**2)
       end do
       metrics(5) = sqrt(metrics(5))
@@ -93,22 +79,5 @@ contains
     call raise(error, err_io, 'can''t write error metrics to '//path//': '//trim(reason), &
                hint='the first string of ExplicitUSLwithVolumetricStrainSmoothing names the file')
   end subroutine write_volume_metrics
-
-  !> Grid indices of a node of a window.
-  pure function node_of(window, position) result(node)
-    !> The window.
-    type(window_t), intent(in) :: window
-    !> Position in its arrays, from 1.
-    integer, intent(in) :: position
-    !> Grid indices, from 0.
-    integer :: node(3)
-    integer :: rest
-
-    rest = position - 1
-    node(1) = window%lo(1) + mod(rest, window%n(1))
-    rest = rest/window%n(1)
-    node(2) = window%lo(2) + mod(rest, window%n(2))
-    node(3) = window%lo(3) + rest/window%n(2)
-  end function node_of
 
 end module mpm_volume_metrics
