@@ -16,8 +16,8 @@ module mpm_avoid_a_void
   private
   public :: insert_and_merge
 
-  !> Distance over r of an inserted point from all others; in a cubic lattice of spacing r the points
-  !! of a cell are sqrt(3)/2 r from its centre.
+  !> Distance over r of an inserted point from all others; in a cubic lattice of spacing r the
+  !! points of a cell are sqrt(3)/2 r from its centre.
   real(wp), parameter :: clearance = 0.5_wp*sqrt(3.0_wp) + 0.01_wp
   !> Distance over r from the surface within which no point is inserted.
   real(wp), parameter :: depth = 2.2_wp
@@ -145,7 +145,8 @@ contains
     end do
   end subroutine insert
 
-  !> Where a point might be inserted: near the first point of a cell, or at the centre of an empty one.
+  !> Where a point might be inserted: near the first point of a cell, or at the centre of an empty
+  !! one.
   pure function candidate(settings, step, cells, cell, x) result(position)
     !> The rules.
     type(quadrature_settings_t), intent(in) :: settings
@@ -261,8 +262,8 @@ contains
 
   !> Make one point of two that are too near to each other.
   !!
-  !! A point takes part in one merger at most; otherwise one behind the other would take over a whole
-  !! row of points.
+  !! A point takes part in one merger at most; otherwise one behind the other would take over a
+  !! whole row of points.
   subroutine merge_close(points, settings, cells, change)
     !> The points.
     class(points_t), intent(inout) :: points

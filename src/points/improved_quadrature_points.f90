@@ -70,9 +70,9 @@ contains
     call description%add_note('The table is that of DefaultPoints. The solver''s flag cpdi has no &
                               &effect on these points.')
     call description%add_note('One integer is enough: position rule 0, no files of corners.')
-    call description%add_note('Entries without names follow the order of mpm_3d, in which a scale of &
-                              &quadrature 1 comes before the numbers of the position rule; a list &
-                              &that is one too short is an error.')
+    call description%add_note('Entries without names follow the order of mpm_3d, in which a scale &
+                              &of quadrature 1 comes before the numbers of the position rule; a &
+                              &list that is one too short is an error.')
     call description%add_note('Results do not depend on the number of threads; random directions &
                               &depend on the seed, the step and the place alone.')
   end subroutine improved_quadrature_points_describe

@@ -15,8 +15,8 @@ module mpm_sph_shift
   private
   public :: correct_as_sph, neighbour_distance
 
-  !> Part by which neighbours may be farther away than 2 r: a lattice of spacing r has points at just
-  !! that distance, of which roundings must not leave out some.
+  !> Part by which neighbours may be farther away than 2 r: a lattice of spacing r has points at
+  !! just that distance, of which roundings must not leave out some.
   real(wp), parameter :: slack = 1.0e-6_wp
 
 contains
