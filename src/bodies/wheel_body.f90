@@ -49,7 +49,7 @@ contains
                           '    point-class = "DefaultPoints"'//nl// &
                           '    node-class = "DefaultNodes"'//nl// &
                           '    material-class = "IsotropicLinearElasticity"'//nl// &
-                          '    material-props = {E = 1e6, nu = 0.3}'//nl//'}')
+                          '    material-props = {E = 1e5, nu = 0.3}'//nl//'}')
     call description%add_real('omega', '1/s', 'angular velocity, about +z by the right hand (TYPE &
                               &4: about the axis of symmetry)')
     call description%add_real('t_start', 's', 'time from which it is kept')
