@@ -8,7 +8,8 @@ module mpm_file_system
   use mpm_strings, only: append_text, string_t
   implicit none
   private
-  public :: delete_leftovers, file_size, matching_files, sync_file, truncate_file
+  public :: delete_leftovers, file_size, matching_files, set_environment, sync_file, &
+            truncate_file
 
   !> `glob_t` of Linux, for the C libraries that there are; other systems have other ones.
   type, bind(c) :: glob_result_t
@@ -108,9 +109,34 @@ module mpm_file_system
       !> Bytes in front of it.
       integer(c_size_t) :: length
     end function c_strlen
+
+    !> POSIX `setenv`.
+    function c_setenv(name, value, overwrite) bind(c, name='setenv') result(status)
+      import :: c_char, c_int
+      implicit none
+      !> The name, ended by a null character.
+      character(kind=c_char), intent(in) :: name(*)
+      !> The value, ended by a null character.
+      character(kind=c_char), intent(in) :: value(*)
+      !> 0 to leave a value that is there.
+      integer(c_int), intent(in), value :: overwrite
+      !> 0 when done.
+      integer(c_int) :: status
+    end function c_setenv
   end interface
 
 contains
+
+  !> Give a variable of the environment a value unless it has one.
+  subroutine set_environment(name, value)
+    !> Its name.
+    character(*), intent(in) :: name
+    !> The value.
+    character(*), intent(in) :: value
+    integer(c_int) :: ignored
+
+    ignored = c_setenv(name//c_null_char, value//c_null_char, 0_c_int)
+  end subroutine set_environment
 
   !> Wait until a file and its entry in its folder are on the disk.
   subroutine sync_file(path, error)

@@ -189,7 +189,7 @@ def test_later_stop_time(mpm3d: Run, tmp_path: Path) -> None:
 
 
 def test_another_rate_and_step(mpm3d: Run, tmp_path: Path) -> None:
-    """Frames go on at multiples of the new interval, with the next number; steps have the new dt."""
+    """Frames go on at multiples of the new interval, with the next number; steps are new, too."""
     saved_scene(mpm3d, tmp_path)
     result = mpm3d(
         *("-r", checkpoint(40)),
@@ -258,7 +258,7 @@ def test_signal_saves_and_stops(
     """The step ends, a checkpoint is written, the exit status tells the signal."""
     process = start_long_run(executable, tmp_path)
     process.send_signal(number)
-    stdout, stderr = process.communicate(timeout=20)
+    _, stderr = process.communicate(timeout=20)
     assert process.returncode == 128 + number
     (path,) = (tmp_path / "save").iterdir()
     step = int(path.name.split(".")[1])
