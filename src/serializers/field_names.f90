@@ -12,11 +12,13 @@ module mpm_field_names
   type, extends(field_writer_t) :: field_names_t
     !> The names, each once.
     type(string_t), allocatable :: names(:)
+    !> Components of all of them, 9 of a tensor.
+    integer :: components = 0
   contains
     procedure :: scalar => field_names_scalar
     procedure :: vector => field_names_vector
-    procedure :: symmetric_tensor => field_names_vector
-    procedure :: gradient_tensor => field_names_vector
+    procedure :: symmetric_tensor => field_names_tensor
+    procedure :: gradient_tensor => field_names_tensor
     !> Whether a name is among them.
     procedure :: has => field_names_has
     !> Keep a name.
@@ -39,10 +41,10 @@ contains
     associate (unused => values)
     end associate
     if (present(window)) continue
-    call self%keep(name)
+    call self%keep(name, 1)
   end subroutine field_names_scalar
 
-  !> Keep the name of a vector or tensor field.
+  !> Keep the name of a vector field.
   subroutine field_names_vector(self, name, values, window)
     !> The names.
     class(field_names_t), intent(inout) :: self
@@ -56,8 +58,25 @@ contains
     associate (unused => values)
     end associate
     if (present(window)) continue
-    call self%keep(name)
+    call self%keep(name, 3)
   end subroutine field_names_vector
+
+  !> Keep the name of a tensor field.
+  subroutine field_names_tensor(self, name, values, window)
+    !> The names.
+    class(field_names_t), intent(inout) :: self
+    !> Name of the field.
+    character(*), intent(in) :: name
+    !> Values. (components, n)
+    real(wp), intent(in) :: values(:, :)
+    !> Window of nodal values.
+    type(window_t), intent(in), optional :: window
+
+    associate (unused => values)
+    end associate
+    if (present(window)) continue
+    call self%keep(name, 9)
+  end subroutine field_names_tensor
 
   !> Whether a name is among them.
   pure function field_names_has(self, name) result(has)
@@ -77,14 +96,18 @@ contains
   end function field_names_has
 
   !> Keep a name.
-  subroutine field_names_keep(self, name)
+  subroutine field_names_keep(self, name, components)
     !> The names.
     class(field_names_t), intent(inout) :: self
     !> The name.
     character(*), intent(in) :: name
+    !> Components of the field.
+    integer, intent(in) :: components
 
     if (.not. allocated(self%names)) allocate (self%names(0))
-    if (.not. self%has(name)) call append_text(self%names, name)
+    if (self%has(name)) return
+    call append_text(self%names, name)
+    self%components = self%components + components
   end subroutine field_names_keep
 
 end module mpm_field_names

@@ -234,7 +234,7 @@ contains
     do k = 1, len(name)
       if (name(k:k) == '/') label(k:k) = '_'
     end do
-    call self%written%keep(label)
+    call self%written%keep(label, components)
     call self%file%enter(group)
     there = self%file%has(label)
     if (.not. there) then

@@ -6,7 +6,7 @@ module mpm_vtkhdf
   use mpm_description, only: description_t
   use mpm_errors, only: err_input, err_io, error_t, raise
   use mpm_field_names, only: field_names_t
-  use mpm_file_system, only: delete_leftovers, file_size
+  use mpm_file_system, only: delete_leftovers, file_size, reserve_space
   use mpm_files, only: delete_file, file_exists, join_path, make_directories, process_id, &
                        rename_file
   use mpm_grid, only: grid_t
@@ -37,6 +37,8 @@ module mpm_vtkhdf
     logical :: with_nodes = .false.
     !> Fields to write; none for all.
     type(string_t), allocatable :: fields(:)
+    !> Components of a point or node in a frame, at most.
+    integer :: components = 0
   contains
     procedure, nopass :: describe => vtkhdf_describe
     procedure :: init => vtkhdf_init
@@ -157,7 +159,7 @@ contains
   !> Every field that is asked for is one that an object has.
   subroutine check_fields(self, model, error)
     !> The serializer.
-    class(vtkhdf_t), intent(in) :: self
+    class(vtkhdf_t), intent(inout) :: self
     !> The model at its start.
     type(model_t), intent(in) :: model
     !> A name that is not known.
@@ -170,6 +172,7 @@ contains
       call model%bodies(i)%body%points%write_fields(known)
       if (self%with_nodes) call send_all_node_fields(model, model%bodies(i)%body, known)
     end do
+    self%components = 3 + known%components
     do i = 1, size(self%fields)
       if (known%has(self%fields(i)%text)) cycle
       hint = nearest_name(self%fields(i)%text, known%names)
@@ -418,6 +421,11 @@ contains
     fields%deflate = self%deflate
     fields%body = body%name
     fields%when = 'frame '//to_text(self%frames)//', t = '//to_text(model%time)//' s'
+    fields%n = body%points%n
+    if (of_nodes) fields%n = whole_size(model%grid)
+    ! A write that fails in the middle would damage what the file has already.
+    call reserve_space(path, frame_bytes(self%components, fields%n), error)
+    if (allocated(error)) return
     call fields%file%open(path, .true.)
     call fields%file%enter('VTKHDF')
     columns = size(topologies, kind=lp)
@@ -425,10 +433,8 @@ contains
       columns = 1
       fields%whole = model%grid%whole()
       fields%periods = model%grid%periods()
-      fields%n = fields%whole%size()
       call send_all_node_fields(model, body, fields)
     else
-      fields%n = body%points%n
       fields%slot = body%points%slots()
       allocate (x(3*fields%n), source=0.0_wp)
       do i = 1, fields%n
@@ -459,6 +465,22 @@ contains
     if (allocated(fields%failure)) call move_alloc(fields%failure, error)
     total = total + file_size(path)
   end subroutine append_frame
+
+  !> Bytes that a file may grow by in a frame: whole chunks, and what the library adds.
+  pure function frame_bytes(components, n) result(n_bytes)
+    !> Components of an entry.
+    integer, intent(in) :: components
+    !> Entries of a frame.
+    integer, intent(in) :: n
+    !> Bytes.
+    integer(lp) :: n_bytes
+    integer(lp), parameter :: for_the_library = 131072
+    integer(lp) :: entries
+
+    entries = n
+    if (mod(entries, chunk_length(n)) > 0) entries = entries + 2*chunk_length(n)
+    n_bytes = components*entries*(storage_size(1.0_wp)/8) + for_the_library
+  end function frame_bytes
 
   !> Nodes of a grid.
   function whole_size(grid) result(n)
