@@ -22,8 +22,7 @@ program mpm3d
   interface
     !> POSIX `_exit`: end the program with a status that is not known at compile time.
     !!
-    !! Not `exit`, since the HDF5 library crashes at the end of a program that could not close a
-    !! file.
+    !! Not `exit`: the HDF5 library crashes at the end of a program that could not close a file.
     subroutine c_exit(status) bind(c, name='_exit')
       import :: c_int
       implicit none

@@ -3,12 +3,13 @@ module mpm_file_system
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funptr, c_int, &
                                          c_long, c_null_char, c_null_funptr, c_ptr, c_size_t
   use mpm_errors, only: err_io, error_t, raise
-  use mpm_files, only: delete_file, directory_of, is_directory, join_path
+  use mpm_files, only: delete_file, directory_of, is_directory, join_path, reason_against
   use mpm_kinds, only: lp
-  use mpm_strings, only: append_text, string_t
+  use mpm_strings, only: append_text, string_t, to_text
   implicit none
   private
-  public :: delete_leftovers, file_size, matching_files, sync_file, truncate_file
+  public :: delete_leftovers, file_size, matching_files, reserve_space, set_environment, &
+            sync_file, truncate_file
 
   !> `glob_t` of Linux, for the C libraries that there are; other systems have other ones.
   type, bind(c) :: glob_result_t
@@ -75,6 +76,20 @@ module mpm_file_system
       integer(c_int) :: status
     end function c_truncate
 
+    !> POSIX `posix_fallocate`: see that a part of a file has room on the disk.
+    function c_fallocate(descriptor, first, length) bind(c, name='posix_fallocate') result(status)
+      import :: c_int, c_long
+      implicit none
+      !> Descriptor of the file.
+      integer(c_int), intent(in), value :: descriptor
+      !> Bytes in front of the part.
+      integer(c_long), intent(in), value :: first
+      !> Bytes of the part.
+      integer(c_long), intent(in), value :: length
+      !> 0 when done.
+      integer(c_int) :: status
+    end function c_fallocate
+
     !> POSIX `glob`: paths that match a pattern.
     function c_glob(pattern, flags, on_error, found) bind(c, name='glob') result(status)
       import :: c_char, c_funptr, c_int, glob_result_t
@@ -108,9 +123,34 @@ module mpm_file_system
       !> Bytes in front of it.
       integer(c_size_t) :: length
     end function c_strlen
+
+    !> POSIX `setenv`.
+    function c_setenv(name, value, overwrite) bind(c, name='setenv') result(status)
+      import :: c_char, c_int
+      implicit none
+      !> The name, ended by a null character.
+      character(kind=c_char), intent(in) :: name(*)
+      !> The value, ended by a null character.
+      character(kind=c_char), intent(in) :: value(*)
+      !> 0 to leave a value that is there.
+      integer(c_int), intent(in), value :: overwrite
+      !> 0 when done.
+      integer(c_int) :: status
+    end function c_setenv
   end interface
 
 contains
+
+  !> Give a variable of the environment a value unless it has one.
+  subroutine set_environment(name, value)
+    !> Its name.
+    character(*), intent(in) :: name
+    !> The value.
+    character(*), intent(in) :: value
+    integer(c_int) :: ignored
+
+    ignored = c_setenv(name//c_null_char, value//c_null_char, 0_c_int)
+  end subroutine set_environment
 
   !> Wait until a file and its entry in its folder are on the disk.
   subroutine sync_file(path, error)
@@ -161,6 +201,33 @@ contains
     if (there) inquire (file=path, size=n_bytes)
     n_bytes = max(0_lp, n_bytes)
   end function file_size
+
+  !> See that a file can grow; its content stays, with zeros behind it.
+  subroutine reserve_space(path, n_bytes, error)
+    !> The file.
+    character(*), intent(in) :: path
+    !> Bytes behind its end.
+    integer(lp), intent(in) :: n_bytes
+    !> `err_io` when there is no room; the file is as it was.
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: ignored
+    type(c_ptr) :: stream
+    integer(lp) :: length
+    integer(c_int) :: status, closed
+
+    length = file_size(path)
+    stream = c_fopen(trim(path)//c_null_char, 'r+b'//c_null_char)
+    if (.not. c_associated(stream)) then
+      call raise(error, err_io, 'writing failed: '//reason_against(path, .true.), file=path)
+      return
+    end if
+    status = c_fallocate(c_fileno(stream), int(length, c_long), int(n_bytes, c_long))
+    closed = c_fclose(stream)
+    if (status == 0) return
+    call truncate_file(path, length, ignored)
+    call raise(error, err_io, 'writing failed: no room for '//to_text(n_bytes)//' bytes more', &
+               file=path)
+  end subroutine reserve_space
 
   !> Cut a file; one that is no longer than that stays.
   subroutine truncate_file(path, n_bytes, error)

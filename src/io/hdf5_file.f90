@@ -6,11 +6,12 @@ module mpm_hdf5_file
   use, intrinsic :: iso_c_binding, only: c_loc, c_ptr
   use hdf5, only: h5_integer_kind, h5_real_kind, h5kind_to_type, h5open_f, h5eset_auto_f, &
                   hid_t, hsize_t, size_t, &
-                  h5aclose_f, h5acreate_f, h5adelete_f, h5aexists_f, h5awrite_f, &
+                  h5aclose_f, h5acreate_f, h5adelete_f, h5aexists_f, h5aopen_f, h5awrite_f, &
                   h5dclose_f, h5dcreate_f, h5dget_space_f, h5dget_type_f, h5dopen_f, h5dread_f, &
                   h5dset_extent_f, h5dwrite_f, &
                   h5fclose_f, h5fcreate_f, h5fflush_f, h5fopen_f, &
-                  h5gclose_f, h5gcreate_f, h5gopen_f, h5lexists_f, &
+                  h5gclose_f, h5gcreate_f, h5gget_obj_info_idx_f, h5gn_members_f, h5gopen_f, &
+                  h5lexists_f, &
                   h5pclose_f, h5pcreate_f, h5pset_chunk_f, h5pset_deflate_f, h5pset_shuffle_f, &
                   h5pset_userblock_f, &
                   h5sclose_f, h5screate_f, h5screate_simple_f, h5sget_simple_extent_dims_f, &
@@ -23,9 +24,11 @@ module mpm_hdf5_file
                   h5t_c_s1, h5t_float_f, h5t_ieee_f64le, h5t_integer_f, h5t_native_integer, &
                   h5t_std_i64le, h5t_std_u8le, h5t_str_nullpad_f, h5t_string_f
   use mpm_errors, only: err_input, err_io, error_t, raise
+  use mpm_file_system, only: set_environment
   use mpm_files, only: file_exists, is_readable, reason_against
   use mpm_kinds, only: lp, wp
   use mpm_store, only: store_t
+  use mpm_strings, only: append_text, string_t
   implicit none
   private
   public :: hdf5_file_t, user_block
@@ -67,6 +70,8 @@ module mpm_hdf5_file
     procedure :: read_reals => hdf5_file_read_reals
     procedure :: read_integers => hdf5_file_read_integers
     procedure :: read_text => hdf5_file_read_text
+    !> Names of what the current group holds.
+    procedure :: names => hdf5_file_names
     !> Give the current group an attribute.
     generic :: set_attribute => set_integers, set_text
     !> Make a dataset that can grow along its last index.
@@ -155,6 +160,8 @@ contains
     call self%close()
     if (allocated(self%failure)) deallocate (self%failure)
     self%path = path
+    ! The library would refuse to write to a file that a viewer has open.
+    call set_environment('HDF5_USE_FILE_LOCKING', 'FALSE')
     call h5open_f(status)
     call h5eset_auto_f(0, status)
   end subroutine start
@@ -283,6 +290,25 @@ contains
     call h5lexists_f(self%here(), name, has, status)
     if (status /= 0) call self%fail(name)
   end function hdf5_file_has
+
+  !> Names of what the current group holds.
+  subroutine hdf5_file_names(self, names)
+    !> The file.
+    class(hdf5_file_t), intent(inout) :: self
+    !> Names of groups and datasets.
+    type(string_t), allocatable, intent(out) :: names(:)
+    character(256) :: name
+    integer :: status, n, i, kind
+
+    allocate (names(0))
+    if (allocated(self%failure)) return
+    call h5gn_members_f(self%here(), '.', n, status)
+    do i = 0, n - 1
+      if (status == 0) call h5gget_obj_info_idx_f(self%here(), '.', i, name, kind, status)
+      if (status == 0) call append_text(names, trim(name))
+    end do
+    if (status /= 0) call self%fail('')
+  end subroutine hdf5_file_names
 
   !> Write reals.
   subroutine hdf5_file_write_reals(self, name, values, extents)
@@ -531,7 +557,7 @@ contains
     call h5dclose_f(dataset, ignored)
   end subroutine read_values
 
-  !> Give the current group an attribute of integers, in place of any of that name.
+  !> Give the current group an attribute of integers; one of that name has as many.
   subroutine set_integers(self, name, values)
     !> The file.
     class(hdf5_file_t), intent(inout) :: self
@@ -573,7 +599,7 @@ contains
     call h5sclose_f(space, status)
   end subroutine set_text
 
-  !> Write an attribute of the current group; one that is there is written over.
+  !> Write an attribute of the current group; numbers are written over those that are there.
   subroutine write_attribute(self, name, file_type, memory_type, space, values)
     !> The file.
     class(hdf5_file_t), intent(inout) :: self
@@ -593,8 +619,13 @@ contains
     logical :: there
 
     call h5aexists_f(self%here(), name, there, status)
-    if (status == 0 .and. there) call h5adelete_f(self%here(), name, status)
-    if (status == 0) then
+    if (status == 0 .and. there .and. file_type == memory_type) then
+      call h5adelete_f(self%here(), name, status)
+      there = .false.
+    end if
+    if (status == 0 .and. there) then
+      call h5aopen_f(self%here(), name, attribute, status)
+    else if (status == 0) then
       call h5acreate_f(self%here(), name, file_type, space, attribute, status)
     end if
     if (status == 0) then

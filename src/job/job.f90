@@ -72,6 +72,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: i
 
+    if (allocated(self%checkpoints%text)) self%serializer%config_text = self%checkpoints%text
     call self%serializer%open(self%model, error)
     if (allocated(error)) return
     call self%checkpoints%begin(self%model, self%serializer, error)

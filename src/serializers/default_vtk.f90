@@ -7,7 +7,7 @@ module mpm_default_vtk
   use mpm_vtk_frames, only: add_vtk_properties, vtk_frames_t
   implicit none
   private
-  public :: default_vtk_t
+  public :: default_vtk_t, send_all_node_fields
 
   !> Legacy VTK files with every field that an object has to offer.
   type, extends(vtk_frames_t) :: default_vtk_t
@@ -67,10 +67,22 @@ contains
     class(body_t), intent(in) :: body
     !> Receiver of nodal fields.
     class(field_writer_t), intent(inout) :: writer
-    integer :: i
 
     associate (unused => self)
     end associate
+    call send_all_node_fields(model, body, writer)
+  end subroutine default_vtk_send_node_fields
+
+  !> Send all fields of the nodes of a body, its boundary and the contacts.
+  subroutine send_all_node_fields(model, body, writer)
+    !> The state.
+    type(model_t), intent(in) :: model
+    !> The body.
+    class(body_t), intent(in) :: body
+    !> Receiver of nodal fields.
+    class(field_writer_t), intent(inout) :: writer
+    integer :: i
+
     if (body%active .and. allocated(body%nodes)) then
       associate (window => body%nodes%window)
         call model%grid%write_velocity(window, body%nodes%velocity(:, :window%size()), writer)
@@ -86,6 +98,6 @@ contains
     do i = 1, size(model%contacts)
       call model%contacts(i)%contact%write_fields(model%bodies, writer)
     end do
-  end subroutine default_vtk_send_node_fields
+  end subroutine send_all_node_fields
 
 end module mpm_default_vtk

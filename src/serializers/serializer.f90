@@ -22,6 +22,8 @@ module mpm_serializer
     !> Frames that a run at the present rate would have written beyond `frames`, when the rate was
     !! changed at a restart.
     integer :: skipped = 0
+    !> Text of the config, for files that tell how they came about.
+    character(:), allocatable :: config_text
     !> Folder of checkpoints; empty for none.
     character(:), allocatable :: save_folder
     !> Start of their names.

@@ -11,6 +11,8 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+import h5py
+import numpy as np
 from scene import Run, block, huang, write_points
 
 DT = 1e-3
@@ -138,6 +140,27 @@ def checkpoint(step: int, folder: str = "save", name: str = NAME) -> str:
     return f"{folder}/{name}.{step:012d}.h5"
 
 
+def contents(path: Path) -> dict[str, bytes]:
+    """Return all datasets and attributes of a file."""
+    found: dict[str, bytes] = {}
+
+    def visit(name: str, item: h5py.Group | h5py.Dataset) -> None:
+        if isinstance(item, h5py.Dataset):
+            found[name] = np.asarray(item[()]).tobytes()
+        found.update({f"{name}@{key}": repr(value).encode() for key, value in item.attrs.items()})
+
+    with h5py.File(path) as file:
+        file.visititems(visit)
+    return found
+
+
 def files_of(folder: Path) -> dict[str, bytes]:
-    """Return the content of all files of a folder by their names."""
-    return {path.name: path.read_bytes() for path in sorted(folder.iterdir()) if path.is_file()}
+    """Return the content of all files of a folder by their names.
+
+    Of an HDF5 file these are its values: where they stand in it depends on how it grew.
+    """
+    return {
+        path.name: repr(contents(path)).encode() if path.suffix == ".vtkhdf" else path.read_bytes()
+        for path in sorted(folder.iterdir())
+        if path.is_file()
+    }

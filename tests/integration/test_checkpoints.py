@@ -189,7 +189,7 @@ def test_later_stop_time(mpm3d: Run, tmp_path: Path) -> None:
 
 
 def test_another_rate_and_step(mpm3d: Run, tmp_path: Path) -> None:
-    """Frames go on at multiples of the new interval with the next number, with the new dt."""
+    """Frames go on at multiples of the new interval, with the next number; steps are new, too."""
     saved_scene(mpm3d, tmp_path)
     result = mpm3d(
         *("-r", checkpoint(40)),
