@@ -20,6 +20,8 @@ module mpm_breakage
   real(wp), parameter :: tolerance = 1.0e-11_wp
   !> Largest change of B or phi along one direction of flow.
   real(wp), parameter :: largest_change = 0.02_wp
+  !> Elastic strain, over that of the trial state, that counts as none.
+  real(wp), parameter :: vanished = 1.0e-8_wp
   !> Directions of flow until a step counts as failed.
   integer, parameter :: patience = 2000
 
@@ -214,13 +216,20 @@ contains
     logical, intent(out) :: good
     type(breakage_state_t) :: next
     type(bracket_t) :: search
-    real(wp) :: rates(3), direction(3, 3), y, y_next, far, q, unused(3), along
+    real(wp) :: rates(3), direction(3, 3), y, y_next, far, q, unused(3), along, start
     integer :: i
 
     good = .true.
+    start = norm2(state%be - identity)
     do i = 1, patience
       call self%yield(state, rr, y, rates, t, q)
       if (y <= tolerance) return
+      if (norm2(state%be - identity) < vanished*start) then
+        ! Contraction has taken all of the pressure, and with it the strength.
+        state%be = identity
+        t = 0.0_wp
+        return
+      end if
       call direct(state, rates, t, q, direction, far)
       next = moved(state, rates, direction, far)
       call self%yield(next, rr, y_next, unused, t, along)
@@ -267,7 +276,7 @@ contains
     far = huge(1.0_wp)
     volume = sum(direction*identity)
     if (volume < 0.0_wp) far = share*(3.0_wp - sum(state%be*identity))/(-volume)
-    if (volume > 0.0_wp) far = share*sum(state%be*identity)/volume
+    far = min(far, share*norm2(state%be - identity)/norm2(direction))
     s = state%be - sum(state%be*identity)/3.0_wp*identity
     shear = sum(s*direction)
     if (shear > 0.0_wp) far = min(far, share*sum(s**2)/shear)
