@@ -13,7 +13,7 @@ from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader
 
 Array = npt.NDArray[np.float64]
 NAME = re.compile(r"(fpd|fnd)\.(\d+)\.(.+)\.(\d{10})\.vtk")
-TITLE = re.compile(r"mpm3d test: Frame (\d+), Time (\S+)")
+TITLE = re.compile(r"mpm3d \w+: Frame (\d+), Time (\S+)")
 FIELD = re.compile(r"^(?:SCALARS|VECTORS|TENSORS) (\S+) double", re.MULTILINE)
 
 
