@@ -181,7 +181,7 @@ contains
     associate (points => body%points)
       deallocate (points%history)
       allocate (points%history(body%material%n_history, points%n))
-      call body%material%start(points%n, points%mass, points%volume, points%history)
+      call body%material%start(points%n, points%x, points%mass, points%volume, points%history)
     end associate
   end subroutine read_material
 

@@ -96,11 +96,13 @@ contains
   end subroutine barotropic_viscous_fluid_init
 
   !> Points begin free of pressure.
-  pure subroutine barotropic_viscous_fluid_start(self, n, mass, volume, history)
+  pure subroutine barotropic_viscous_fluid_start(self, n, x, mass, volume, history)
     !> The material.
     class(barotropic_viscous_fluid_t), intent(in) :: self
     !> Number of points.
     integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(self%kin%dim, n)
     !> Masses. [kg] (n)
     real(wp), intent(in) :: mass(n)
     !> Volumes. [m3] (n)
@@ -108,7 +110,7 @@ contains
     !> Volumes without pressure. [m3] (1, n)
     real(wp), intent(out) :: history(self%n_history, n)
 
-    associate (unused => mass)
+    associate (unused => x, unused_mass => mass)
     end associate
     history(1, :) = volume
   end subroutine barotropic_viscous_fluid_start

@@ -78,11 +78,13 @@ contains
   end subroutine neohookean_init
 
   !> Points begin without strain.
-  pure subroutine neohookean_start(self, n, mass, volume, history)
+  pure subroutine neohookean_start(self, n, x, mass, volume, history)
     !> The material.
     class(compressible_neohookean_elasticity_t), intent(in) :: self
     !> Number of points.
     integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(self%kin%dim, n)
     !> Masses. [kg] (n)
     real(wp), intent(in) :: mass(n)
     !> Volumes. [m3] (n)
@@ -91,7 +93,7 @@ contains
     real(wp), intent(out) :: history(self%n_history, n)
     real(wp) :: stored(9)
 
-    associate (unused => mass, unused_volume => volume)
+    associate (unused => x, unused_mass => mass, unused_volume => volume)
     end associate
     stored = store_deformation(self%kin, identity)
     history = spread(stored(:self%n_history), 2, n)

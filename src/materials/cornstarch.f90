@@ -150,11 +150,13 @@ contains
   end subroutine cornstarch_init
 
   !> Points begin with the first fraction of contacts.
-  pure subroutine cornstarch_start(self, n, mass, volume, history)
+  pure subroutine cornstarch_start(self, n, x, mass, volume, history)
     !> The material.
     class(cornstarch_t), intent(in) :: self
     !> Number of points.
     integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(self%kin%dim, n)
     !> Masses. [kg] (n)
     real(wp), intent(in) :: mass(n)
     !> Volumes. [m3] (n)
@@ -162,7 +164,7 @@ contains
     !> Plastic shear strain, its rate, and c. (3, n)
     real(wp), intent(out) :: history(self%n_history, n)
 
-    associate (unused => mass, unused_volume => volume)
+    associate (unused => x, unused_mass => mass, unused_volume => volume)
     end associate
     history(1:2, :) = 0.0_wp
     history(3, :) = self%first

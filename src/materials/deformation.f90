@@ -105,7 +105,9 @@ contains
     good = all(abs(f) <= largest)
     if (.not. good) return
     j = determinant(f)
-    good = j > 1.0_wp/largest**2
+    ! A determinant that is no more than its roundings has no sign.
+    good = j > 64.0_wp*epsilon(1.0_wp)*norm2(f(1, :))*norm2(f(2, :))*norm2(f(3, :)) &
+           .and. j > 1.0_wp/largest**2
   end subroutine advance_deformation
 
   !> Exponential of a tensor, by its series at a fraction 1/2**s and s squarings.

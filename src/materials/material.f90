@@ -128,11 +128,13 @@ module mpm_material
 contains
 
   !> The memory of points that have not moved yet: 0.
-  pure subroutine material_start(self, n, mass, volume, history)
+  pure subroutine material_start(self, n, x, mass, volume, history)
     !> The material.
     class(material_t), intent(in) :: self
     !> Number of points.
     integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(self%kin%dim, n)
     !> Masses. [kg] (n)
     real(wp), intent(in) :: mass(n)
     !> Volumes. [m3] (n)
@@ -140,7 +142,7 @@ contains
     !> What the points remember. (n_history, n)
     real(wp), intent(out) :: history(self%n_history, n)
 
-    associate (unused => mass, unused_volume => volume)
+    associate (unused => x, unused_mass => mass, unused_volume => volume)
     end associate
     history = 0.0_wp
   end subroutine material_start

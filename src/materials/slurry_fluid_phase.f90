@@ -96,11 +96,13 @@ contains
   end subroutine slurry_fluid_phase_init
 
   !> Points begin free of pressure, with nothing but fluid.
-  pure subroutine slurry_fluid_phase_start(self, n, mass, volume, history)
+  pure subroutine slurry_fluid_phase_start(self, n, x, mass, volume, history)
     !> The material.
     class(slurry_fluid_phase_t), intent(in) :: self
     !> Number of points.
     integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(self%kin%dim, n)
     !> Masses. [kg] (n)
     real(wp), intent(in) :: mass(n)
     !> Volumes. [m3] (n)
@@ -108,7 +110,7 @@ contains
     !> ln J and porosity. (2, n)
     real(wp), intent(out) :: history(self%n_history, n)
 
-    associate (unused => mass, unused_volume => volume)
+    associate (unused => x, unused_mass => mass, unused_volume => volume)
     end associate
     history(log_j, :) = 0.0_wp
     history(porosity, :) = 1.0_wp

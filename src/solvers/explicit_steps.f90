@@ -569,7 +569,7 @@ contains
       end if
       allocate (stress(points%kin%nstress, n), source=0.0_wp)
       allocate (history(body%material%n_history, n))
-      call body%material%start(n, points%mass(:n), volume, history)
+      call body%material%start(n, points%x(:, :n), points%mass(:n), volume, history)
       limit = stable_time(stable_length(spacing, body), &
                           body%material%wave_speed(n, points%mass(:n), volume, stress, history), &
                           body%material%diffusivity(n, points%mass(:n), volume))

@@ -60,7 +60,11 @@ BODIES = {
 SOFTER = {
     "Cornstarch": [("E = 1e6", "E = 1e5")],
     "TillotsonEOSFluid": [("A = 2.18e9", "A = 2e5"), ("B = 1.325e10", "B = 2e5")],
-    "BreakageMechanicsSand": [("p_r = 1e3", "p_r = 10")],
+    "Fish": [("E = 1e5", "E = 1e4")],
+    "BreakageMechanicsSand": [
+        ("p_r = 1e3, K = 12000, G = 9000", "p_r = 10, K = 1200, G = 900"),
+        ("E_c = 3.5e4", "E_c = 1500"),
+    ],
 }
 
 

@@ -65,6 +65,7 @@ contains
     type(description_t) :: description
     type(properties_t) :: properties
     type(error_t), allocatable :: error
+    real(wp), allocatable :: x(:, :)
 
     self%failure = ''
     self%kin = make_kinematics(sim_type)
@@ -81,7 +82,8 @@ contains
     end if
     allocate (self%stress(self%kin%nstress, 1), source=0.0_wp)
     allocate (self%history(self%material%n_history, 1))
-    call self%material%start(1, self%mass, self%volume, self%history)
+    allocate (x(self%kin%dim, 1), source=0.0_wp)
+    call self%material%start(1, x, self%mass, self%volume, self%history)
   end subroutine material_point_make
 
   !> Make steps of one velocity gradient, until one says that the point is bad.
