@@ -14,6 +14,7 @@ module mpm_vtk_frames
   use mpm_serializer, only: serializer_t
   use mpm_strings, only: string_t, to_text
   use mpm_text_writer, only: text_writer_t
+  use mpm_vtk_corners, only: write_corners
   use mpm_vtk_node_fields, only: vtk_node_fields_t
   use mpm_vtk_point_fields, only: vtk_point_fields_t
   use mpm_window, only: window_t
@@ -49,6 +50,8 @@ module mpm_vtk_frames
     procedure, private :: write_points
     procedure, private :: write_nodes
     procedure, private :: path
+    procedure, private :: corner_path
+    procedure, private :: file_name
     procedure, private :: title
   end type vtk_frames_t
 
@@ -169,6 +172,13 @@ contains
         call trial%discard()
         if (allocated(error)) return
         if (.not. allocated(body%points)) cycle
+        if (has_corners(body)) then
+          call make_directories(body%points%domains%folder, error)
+          if (allocated(error)) return
+          call trial%open(self%corner_path(body), error)
+          call trial%discard()
+          if (allocated(error)) return
+        end if
         if (allocated(body%points%gradient)) cycle
         allocate (body%points%gradient(body%points%kin%ngrad, body%points%n), source=0.0_wp)
       end associate
@@ -184,21 +194,25 @@ contains
     !> Writing failed, or a value is not finite.
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: ignored
-    type(string_t) :: paths(2*size(model%bodies))
+    type(string_t) :: paths(3*size(model%bodies))
     integer(lp) :: n_bytes, total
     integer :: i, k, n_written
 
     n_written = 0
     total = 0
     do i = 1, size(model%bodies)
-      do k = 1, 2
+      do k = 1, 3
         associate (body => model%bodies(i)%body, file => paths(n_written + 1))
           if (k == 1) then
             file%text = self%path('fpd', body)
             call self%write_points(model, body, file%text, error)
-          else
+          else if (k == 2) then
             file%text = self%path('fnd', body)
             call self%write_nodes(model, body, file%text, error)
+          else
+            if (.not. has_corners(body)) cycle
+            file%text = self%corner_path(body)
+            call write_corners(body%points, file%text, self%title(model), self%digits, error)
           end if
           if (allocated(error)) exit
           inquire (file=file%text, size=n_bytes)
@@ -260,7 +274,32 @@ contains
     call fields%commit(error)
   end subroutine write_nodes
 
-  !> Name of a file of the next frame.
+  !> Whether the corners of the domains of a body's points are written.
+  pure function has_corners(body)
+    !> The body.
+    class(body_t), intent(in) :: body
+    !> Whether they are.
+    logical :: has_corners
+
+    has_corners = .false.
+    if (.not. allocated(body%points)) return
+    if (.not. allocated(body%points%domains)) return
+    has_corners = allocated(body%points%domains%folder)
+  end function has_corners
+
+  !> Name of the file of corners of the next frame.
+  function corner_path(self, body) result(path)
+    !> The serializer.
+    class(vtk_frames_t), intent(in) :: self
+    !> The body, whose points have a folder for corners.
+    class(body_t), intent(in) :: body
+    !> The path.
+    character(:), allocatable :: path
+
+    path = join_path(body%points%domains%folder, self%file_name('fpd', body, '.corners'))
+  end function corner_path
+
+  !> Path of a file of the next frame.
   function path(self, prefix, body)
     !> The serializer.
     class(vtk_frames_t), intent(in) :: self
@@ -270,6 +309,22 @@ contains
     class(body_t), intent(in) :: body
     !> The path.
     character(:), allocatable :: path
+
+    path = join_path(self%folder, self%file_name(prefix, body, ''))
+  end function path
+
+  !> Name of a file of the next frame.
+  function file_name(self, prefix, body, kind)
+    !> The serializer.
+    class(vtk_frames_t), intent(in) :: self
+    !> `fpd` or `fnd`.
+    character(*), intent(in) :: prefix
+    !> The body.
+    class(body_t), intent(in) :: body
+    !> What stands between the name of the body and the number of the frame.
+    character(*), intent(in) :: kind
+    !> The name.
+    character(:), allocatable :: file_name
     character(:), allocatable :: name
     character(10) :: number
     integer :: i
@@ -279,8 +334,8 @@ contains
       if (name(i:i) == '/') name(i:i) = '_'
     end do
     write (number, '(i10.10)') self%frames
-    path = join_path(self%folder, prefix//'.'//to_text(body%id)//'.'//name//'.'//number//'.vtk')
-  end function path
+    file_name = prefix//'.'//to_text(body%id)//'.'//name//kind//'.'//number//'.vtk'
+  end function file_name
 
   !> Title line of the next frame.
   function title(self, model)

@@ -95,7 +95,11 @@ contains
     do i = 1, size(model%bodies)
       call locate_points(model, i, self%averaged, error, self%transfer%fitted)
       if (allocated(error)) return
-      call self%transfer%start(model%bodies(i)%body%points)
+      call self%transfer%start(model%bodies(i)%body%points, error)
+      if (allocated(error)) then
+        error%message = 'body "'//model%bodies(i)%body%name//'": '//error%message
+        return
+      end if
     end do
     call self%map(model, error)
     if (allocated(error)) then

@@ -10,6 +10,7 @@ module mpm_explicit_usl_with_volumetric_strain_smoothing
   use mpm_kinematics, only: kinematics_t, type_plane_strain
   use mpm_material, only: material_t
   use mpm_model, only: model_t
+  use mpm_point_domains, only: rule_cpdi2
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
   use mpm_stencil, only: block_size
@@ -212,6 +213,14 @@ contains
     if (allocated(error)) return
     do i = 1, size(model%bodies)
       associate (points => model%bodies(i)%body%points)
+        if (allocated(points%domains) .and. .not. self%material_only) then
+          if (points%domains%rule == rule_cpdi2) then
+            call self%properties%reject('flags', 'the volume of CPDI2 points is that between their &
+                                        &corners, which smoothing would change', error, &
+                                        'add the flag ANTI_LOCKING_ONLY, or use CPDI')
+            return
+          end if
+        end if
         allocate (points%reference_volume, source=points%volume)
         if (self%material_only) allocate (points%smoothed_volume, source=points%volume)
         if (allocated(points%gradient)) cycle

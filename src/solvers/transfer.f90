@@ -6,7 +6,7 @@
 module mpm_transfer
   use mpm_body, only: body_t
   use mpm_description, only: description_t
-  use mpm_errors, only: error_t
+  use mpm_errors, only: err_input, error_t, raise
   use mpm_kinds, only: wp
   use mpm_nodes, only: nodes_t
   use mpm_point_maps, only: interpolate_points, map_momentum
@@ -126,14 +126,22 @@ contains
   end function transfer_is_flip
 
   !> Prepare a body before the first mapping: room for affine fields.
-  subroutine transfer_start(self, points)
+  subroutine transfer_start(self, points, error)
     !> The transfer.
     class(transfer_t), intent(in) :: self
     !> The points.
     class(points_t), intent(inout) :: points
+    !> Affine fields of points whose functions are means over domains.
+    type(error_t), allocatable, intent(out) :: error
 
     if (allocated(points%affine)) deallocate (points%affine)
     if (.not. self%affine) return
+    if (allocated(points%domains)) then
+      call raise(error, err_input, 'the transfers APIC and MLS need the functions at the points, &
+                 &but these points have means over domains', hint='use transfer = "FLIP", "PIC" &
+                 &or "XPIC", or points without domains (quadrature 0)')
+      return
+    end if
     allocate (points%affine(points%kin%nvel*points%kin%dim, points%n), source=0.0_wp)
   end subroutine transfer_start
 

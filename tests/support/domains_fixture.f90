@@ -4,13 +4,14 @@ module mpm_domains_fixture
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t, make_kinematics
   use mpm_point_domains, only: point_domains_t, rule_cpdi, rule_cpdi2, rule_cpgimp
+  use mpm_points, only: points_t
   use mpm_random_fixture, only: random_t
   use mpm_stencil, only: basis_box, natural_width, stencil_t
   use mpm_window, only: window_t
   implicit none
   private
-  public :: deform_domains, domain_cloud_t, functions_of, list_all, make_basis, make_domain_cloud
-  public :: set_parallelepiped, sums_by_definition
+  public :: deform_domains, domain_cloud_t, functions_of, give_domains, list_all, make_basis
+  public :: make_domain_cloud, set_parallelepiped, sums_by_definition
 
   !> Points with domains as `points_t` holds them.
   type :: domain_cloud_t
@@ -31,6 +32,18 @@ module mpm_domains_fixture
   end type domain_cloud_t
 
 contains
+
+  !> Give points domains that are boxes of their volumes.
+  subroutine give_domains(points, rule)
+    !> The points.
+    class(points_t), intent(inout) :: points
+    !> One of `rule_*`; 0 leaves them without.
+    integer, intent(in) :: rule
+
+    if (rule == 0) return
+    allocate (points%domains)
+    call points%domains%init(points%kin, rule, 1.0_wp, points%volume, points%x)
+  end subroutine give_domains
 
   !> A basis on cells of uneven sides; the box does not begin at 0, but for the radius in TYPE 4.
   subroutine make_basis(sim_type, kind, periodic, n_cells, stencil)
