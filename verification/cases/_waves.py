@@ -243,7 +243,7 @@ class DiscreteWave:
         """Return the rate at which the energy decays: E ~ exp(-rate t)."""
         return -2.0 * float(np.log(np.abs(self.eigenvalue(dt)))) / dt
 
-    def march(self, velocity: float, dt: float, steps: int) -> tuple[Array, Array]:
+    def march(self, velocity: complex, dt: float, steps: int) -> tuple[Array, Array]:
         """Return U and the sum of f after 0, 1, ... steps from rest at zero displacement.
 
         `velocity` is the velocity of the grid at the start.

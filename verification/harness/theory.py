@@ -190,6 +190,18 @@ def series(n: int, shift: float = 0.0, basis: str = "linear") -> tuple[float, fl
     return 0.5 * (a + float(np.mean(d3)) / 3.0 - float(np.mean(d2**2)) / 4.0), a
 
 
+def stress_constant(n: int, shift: float = 0.0, basis: str = "linear") -> float:
+    """Return b of the error b kh, relative to its amplitude, of the stress of a wave at points.
+
+    D = ik(1 + ikh d_2/2 + ...), so that b is the root mean square of d_2/2: 0 for splines, the mean
+    distance from the middle of a cell, sqrt((1 - 1/n^2)/12), for linear functions.
+    """
+    places = point_offsets(n, shift)
+    distance = places[:, None] - near_nodes(places)
+    d2 = np.sum(node_functions(basis, distance, n)[1] * distance**2, axis=1)
+    return 0.5 * float(np.sqrt(np.mean(d2**2)))
+
+
 def dispersion_constant(n: int, basis: str = "linear") -> float:
     """Return kappa of omega_h/omega = 1 - kappa (kh)^2 for symmetric points.
 
