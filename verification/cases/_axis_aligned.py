@@ -20,6 +20,7 @@ import numpy.typing as npt
 from _manufactured import Solution
 from harness.case import Finding, Output, Parameters
 from harness.scene import DIM, Body, Scene, lattice, section, stable_dt
+from harness.theory import grid_functions
 
 Array = npt.NDArray[np.float64]
 
@@ -248,8 +249,11 @@ def follow_bar(p: Parameters, scene: Scene) -> list[tuple[Array, Array, Array]]:
             outside = ((s + quarter > cells) | (s - quarter < 0))[:, 0]
             weight[outside] = hat(s - nodes)[outside]
             gradient[outside] = hat_slope(s - nodes)[outside] / h
-        else:
+        elif p.mapping == "linear":
             weight, gradient = hat(s - nodes), hat_slope(s - nodes) / h
+        else:
+            weight, gradient = grid_functions(p.mapping, s[:, 0], cells, p.ppc)
+            gradient = gradient / h
         growth = 1 + amplitude * WAVE_NUMBER * slope * np.sin(omega * n * dt + phase)
         wave = amplitude * omega**2 * shape * np.sin(omega * n * dt + phase)
         load = wave * (1 / growth - 1)
