@@ -72,12 +72,6 @@ def body_points(p: Parameters) -> Points:
     return points
 
 
-def rate_of_stress(p: Parameters) -> str:
-    """Return the line of the body that chooses the integration of rotations."""
-    rate = p.text("rate", "")
-    return f'\n    material-str-props = {{"{rate}"}}' if rate else ""
-
-
 def scene(p: Parameters) -> Scene:
     """Return the scene: one revolution without walls; TYPE 4: between rollers."""
     counts = layout(p)[0]
@@ -90,7 +84,7 @@ def scene(p: Parameters) -> Scene:
         p.sim_type,
         [n * SPACING for n in counts],
         counts,
-        [Body("body", body_points(p), YOUNG, POISSON, boundary + rate_of_stress(p))],
+        [Body("body", body_points(p), YOUNG, POISSON, boundary)],
         t_stop,
         stable_dt(SPACING, 1, WAVE_SPEED, t_stop, p.number("cfl", 0.2), frames),
         frames,
