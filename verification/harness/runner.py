@@ -51,7 +51,7 @@ class Program:
 
 def sources_digest(case: str) -> str:
     """Return a digest of the files that decide what a run is and how it is measured."""
-    paths = [HARNESS / f"{name}.py" for name in ("scene", "scheme", "frames", "norms", "theory")]
+    paths = [HARNESS / f"{name}.py" for name in ("scene", "scheme", "steps", "frames", "norms", "theory")]
     waiting, known = [CASES / f"{case}.py"], set()
     while waiting:
         path = waiting.pop()
