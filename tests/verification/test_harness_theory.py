@@ -97,3 +97,116 @@ def test_tent() -> None:
     ]
     assert theory.point_offsets(2).tolist() == [0.25, 0.75]
     assert theory.point_offsets(1, shift=0.25).tolist() == [0.75]
+
+
+@pytest.mark.parametrize("basis", theory.BASES)
+@pytest.mark.parametrize("n", [1, 2, 3, 4])
+@pytest.mark.parametrize("shift", [0.0, 0.13])
+def test_series_is_the_limit_of_the_symbols(basis: str, n: int, shift: float) -> None:
+    """For long waves: the next term is (kh)^2 times smaller; 0.3 and more of each constant."""
+    kh = 0.02
+    kappa, a = theory.series(n, shift, basis)
+    k2, mu = theory.symbols(kh, n, shift, basis)
+    assert (1.0 - mu) / kh**2 == pytest.approx(a, rel=kh**2)
+    assert (1.0 - math.sqrt(k2 * mu) / kh) / kh**2 == pytest.approx(kappa, rel=kh**2)
+
+
+@pytest.mark.parametrize("basis", theory.BASES)
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 7, 100])
+def test_constants_of_the_bases(basis: str, n: int) -> None:
+    """Closed forms for symmetric points against sums over the points."""
+    kappa, a = theory.series(n, basis=basis)
+    assert theory.dispersion_constant(n, basis) == pytest.approx(kappa, rel=1e-12)
+    assert theory.filter_constant(n, basis) == pytest.approx(a, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("basis", "kappas", "limit", "a"),
+    [
+        ("ugimp", [1 / 6, 0.13542, 0.12963, 0.12760], 1 / 8, 1 / 6),
+        ("cpdi", [1 / 6, 0.13542, 0.12963, 0.12760], 1 / 8, 1 / 6),
+        ("quadratic", [1 / 6, 0.26042, 0.24074, 0.25260], 1 / 4, 1 / 4),
+        ("cubic", [1 / 3, 1 / 3, 1 / 3, 1 / 3], 1 / 3, 1 / 3),
+    ],
+)
+def test_derived_constants_of_the_bases(
+    basis: str, kappas: list[float], limit: float, a: float
+) -> None:
+    """Five digits for 1 to 4 points per cell, and many points: 1/n^2 away at most."""
+    for n, kappa in enumerate(kappas, 1):
+        assert theory.series(n, basis=basis)[0] == pytest.approx(kappa, abs=6e-6)
+    assert theory.series(100, basis=basis) == pytest.approx((limit, a), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("basis", "symmetric", "worst"), [("quadratic", 1.350, 1.033), ("cubic", 1.486, 1.486)]
+)
+def test_stability_limits_of_splines(basis: str, symmetric: float, worst: float) -> None:
+    """Two points per cell, on symmetric places and on the worst of all places."""
+    assert theory.stability_limit(2, basis=basis) == pytest.approx(symmetric, abs=6e-4)
+    limits = [theory.stability_limit(2, shift, basis) for shift in np.linspace(0.0, 0.5, 11)]
+    assert min(limits) == pytest.approx(worst, abs=6e-4)
+
+
+def test_boxes_of_half_a_cell_are_quadratic() -> None:
+    """Boxes as wide as a cell make the quadratic B-spline, narrow boxes the hat."""
+    x = np.linspace(-2.0, 2.0, 161)
+    for one, two in zip(
+        theory.node_functions("ugimp", x, 1), theory.node_functions("quadratic", x, 3), strict=True
+    ):
+        assert one.tolist() == two.tolist()
+    narrow = theory.node_functions("ugimp", x, 1e6)[0]
+    assert narrow == pytest.approx(theory.tent(x), abs=1e-6)
+
+
+@pytest.mark.parametrize("basis", theory.BASES)
+def test_slopes_are_derivatives(basis: str) -> None:
+    """By central differences between the kinks; of the averages only far from them."""
+    x = np.arange(-2.0, 2.0, 0.1) + 0.0503
+    if basis == "cpdi":
+        x = x[np.abs(np.abs(x) - np.round(np.abs(x))) > 0.13]
+    step = 1e-6
+    values = [theory.node_functions(basis, x + d, 2)[0] for d in (-step, step)]
+    slopes = theory.node_functions(basis, x, 2)[1]
+    assert (values[1] - values[0]) / (2 * step) == pytest.approx(slopes, abs=1e-8)
+
+
+@pytest.mark.parametrize("basis", theory.BASES)
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_grid_functions_keep_linear_fields_between_walls(basis: str, n: int) -> None:
+    """Sums are 1, positions are reproduced, and at a wall its node counts alone."""
+    x = theory.point_offsets(5 * n) * 5
+    values, slopes = theory.grid_functions(basis, x, 5, n)
+    nodes = np.arange(6)
+    assert values.sum(axis=1) == pytest.approx(np.ones(len(x)), rel=1e-14)
+    assert values @ nodes == pytest.approx(x, rel=1e-14)
+    assert slopes.sum(axis=1) == pytest.approx(np.zeros(len(x)), abs=1e-14)
+    assert slopes @ nodes == pytest.approx(np.ones(len(x)), rel=1e-13)
+    if basis != "cpdi":
+        ends = theory.grid_functions(basis, np.array([0.0, 5.0]), 5, n)[0]
+        assert ends == pytest.approx(np.eye(6)[[0, 5]], abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("basis", "volumes"),
+    [("quadratic", [13 / 24, 23 / 24]), ("cubic", [7 / 12, 11 / 12]), ("ugimp", [1 / 2, 1])],
+)
+def test_node_volumes_next_to_walls(basis: str, volumes: list[float]) -> None:
+    """Integrals of the functions, by many points."""
+    n = 400
+    values = theory.grid_functions(basis, theory.point_offsets(4 * n) * 4, 4, n)[0]
+    found = values.sum(axis=0) / n
+    assert found == pytest.approx([*volumes, 1.0, *volumes[::-1]], abs=1 / n**2 + 1e-12)
+
+
+@pytest.mark.parametrize("basis", theory.BASES)
+def test_seams_carry_the_symbols(basis: str) -> None:
+    """A wave of a periodic grid gives its points S and D."""
+    cells, n, shift, k = 6, 2, 0.17, 2.0 * math.pi / 6
+    x = (theory.point_offsets(cells * n) * cells + shift) % cells
+    wave = np.exp(1j * k * np.arange(cells))
+    values, slopes = theory.grid_functions(basis, x, cells, n, periodic=True)
+    s, d = theory.cell_symbols(k, n, shift, basis)
+    back = np.exp(1j * k * x)
+    assert values @ wave == pytest.approx(np.tile(s, cells) * back, rel=1e-12)
+    assert slopes @ wave == pytest.approx(np.tile(d, cells) * back, rel=1e-12)

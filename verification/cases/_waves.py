@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 from harness.case import Parameters
 from harness.scene import DIM, Body, Points, Scene, lattice, pressure_wave_modulus, stable_dt
+from harness.theory import cell_symbols, near_nodes, node_functions
 
 Array = npt.NDArray[np.float64]
 
@@ -169,52 +170,21 @@ class Bar:
         return self.c * dt / self.h
 
 
-def interpolate(function: Callable[[Array], Array], x: Array, h: float) -> Array:
-    """Return what points between grid lines get of a function's values on the lines."""
-    cell = np.floor(x / h)
-    xi = x / h - cell
-    return (1.0 - xi) * function(cell * h) + xi * function((cell + 1.0) * h)
+def interpolate(
+    function: Callable[[Array], Array], x: Array, h: float, basis: str = "linear", n: int = 1
+) -> Array:
+    """Return what points get of a function's values at the nodes; n points a cell."""
+    nodes = near_nodes(x / h)
+    return np.sum(node_functions(basis, (x / h)[:, None] - nodes, n)[0] * function(nodes * h), 1)
 
 
-def slope(function: Callable[[Array], Array], x: Array, h: float) -> Array:
-    """Return the gradient that points between grid lines see of a function."""
-    cell = np.floor(x / h)
-    return (function((cell + 1.0) * h) - function(cell * h)) / h
-
-
-def cell_symbols(
-    kh: float, n: int, shift: float = 0.0, averaged: bool = False
-) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
-    """Return S_p and h D_p of the points of a cell.
-
-    The corner-averaged functions take the mean of the linear ones a quarter of the point's box,
-    1/(4n), before and behind the point, and their difference as gradient.
-
-    Parameters
-    ----------
-    kh : float
-        Wave number times cell size.
-    n : int
-        Points per cell.
-    shift : float
-        Offset of the points from the symmetric places, in cells.
-    averaged : bool
-        Corner-averaged functions.
-    """
-    xi = (np.arange(n) + 0.5) / n + shift
-
-    def hats(place: Array) -> npt.NDArray[np.complex128]:
-        node = np.floor(place)
-        part = place - node
-        return np.exp(1j * kh * node) * (1.0 - part + part * np.exp(1j * kh))
-
-    back = np.exp(-1j * kh * xi)
-    if averaged:
-        quarter = 0.25 / n
-        before, behind = hats(xi - quarter), hats(xi + quarter)
-        return 0.5 * (before + behind) * back, (behind - before) / (2.0 * quarter) * back
-    gradient = np.exp(1j * kh * np.floor(xi)) * (np.exp(1j * kh) - 1.0)
-    return hats(xi) * back, gradient * back
+def slope(
+    function: Callable[[Array], Array], x: Array, h: float, basis: str = "linear", n: int = 1
+) -> Array:
+    """Return the gradient that points see of a function's values at the nodes."""
+    nodes = near_nodes(x / h)
+    slopes = node_functions(basis, (x / h)[:, None] - nodes, n)[1]
+    return np.sum(slopes * function(nodes * h), 1) / h
 
 
 @dataclass(frozen=True)
@@ -229,9 +199,9 @@ class Symbols:
     s: complex
 
 
-def symbols(kh: float, n: int, shift: float = 0.0, averaged: bool = False) -> Symbols:
+def symbols(kh: float, n: int, shift: float = 0.0, basis: str = "linear") -> Symbols:
     """Return the means of `cell_symbols`."""
-    s, d = cell_symbols(kh, n, shift, averaged)
+    s, d = cell_symbols(kh, n, shift, basis)
     return Symbols(
         float(np.mean(np.abs(s) ** 2)),
         float(np.mean(np.abs(d) ** 2)),
@@ -290,9 +260,11 @@ class DiscreteWave:
         return np.array(displacements), np.array(sums)
 
 
-def bar_wave(kh: float, n: int, c: float, h: float, shift: float = 0.0) -> DiscreteWave:
+def bar_wave(
+    kh: float, n: int, c: float, h: float, shift: float = 0.0, basis: str = "linear"
+) -> DiscreteWave:
     """Return a wave along a bar."""
-    means = symbols(kh, n, shift)
+    means = symbols(kh, n, shift, basis)
     return DiscreteWave(c**2 * means.k2 / h**2, means.mu)
 
 

@@ -76,7 +76,7 @@ def waves(p: Parameters) -> list[tuple[float, float]]:
     dim, result = len(cells), []
     for numbers in itertools.product(*[range(n + 1) for n in cells]):
         means = [
-            symbols(np.pi * j / n, p.ppc, averaged=p.mapping == "cpdi")
+            symbols(np.pi * j / n, p.ppc, basis=p.mapping)
             for j, n in zip(numbers, cells, strict=True)
         ]
         mu = float(np.prod([one.mu for one in means]))

@@ -83,7 +83,7 @@ def measure(p: Parameters, out: Output) -> Measures:
         nodes = theory[number] / (STRAIN * LENGTH)
 
         def of_nodes(place: np.ndarray, nodes: np.ndarray = nodes) -> np.ndarray:
-            return nodes[np.rint(place / this.h).astype(int)]
+            return nodes[np.clip(np.rint(place / this.h).astype(int), 0, p.cells)]
 
         deviation = max(deviation, linf(u - interpolate(of_nodes, x, this.h)))
         stress_deviation = max(stress_deviation, linf(s - LENGTH * slope(of_nodes, x, this.h)))

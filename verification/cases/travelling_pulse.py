@@ -83,7 +83,7 @@ def measure(p: Parameters, out: Output) -> Measures:
         errors.add("e_s", s - gradient)
 
         def of_nodes(place: np.ndarray, nodes: np.ndarray = theory[number]) -> np.ndarray:
-            return nodes[np.rint(place / bar.h).astype(int)]
+            return nodes[np.clip(np.rint(place / bar.h).astype(int), 0, p.cells)]
 
         result["d_u"] = max(result["d_u"], linf(u - interpolate(of_nodes, x, bar.h)))
         result["d_s"] = max(result["d_s"], linf(s - WIDTH * slope(of_nodes, x, bar.h)))
