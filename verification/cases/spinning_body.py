@@ -72,12 +72,6 @@ def body_points(p: Parameters) -> Points:
     return points
 
 
-def rate_of_stress(p: Parameters) -> str:
-    """Return the line of the body that chooses the integration of rotations."""
-    rate = p.text("rate", "")
-    return f'\n    material-str-props = {{"{rate}"}}' if rate else ""
-
-
 def scene(p: Parameters) -> Scene:
     """Return the scene: one revolution without walls; TYPE 4: between rollers."""
     counts = layout(p)[0]
@@ -90,7 +84,7 @@ def scene(p: Parameters) -> Scene:
         p.sim_type,
         [n * SPACING for n in counts],
         counts,
-        [Body("body", body_points(p), YOUNG, POISSON, boundary + rate_of_stress(p))],
+        [Body("body", body_points(p), YOUNG, POISSON, boundary)],
         t_stop,
         stable_dt(SPACING, 1, WAVE_SPEED, t_stop, p.number("cfl", 0.2), frames),
         frames,
@@ -166,7 +160,7 @@ def judge(r: Results) -> list[Finding]:
         findings.append(below(f"loss of angular momentum{end}", m["loss"], bound, law))
         if p.number("tip", 0.1) < 0.05:
             # Elastic expansion: rho w^2 R^2/M = tip^2 = 4e-4 against a growth of some 5e-3.
-            if p.text("rate", "") == "hughes_winget":
+            if p.scheme.rate == "hughes_winget":
                 size = below(
                     f"growth of the logarithm of the inertia{end}",
                     abs(m["size"]),
@@ -188,7 +182,7 @@ def judge(r: Results) -> list[Finding]:
                 p.number("tip", 0.1) ** 2,
                 "det F without elastic strain is 1; elastic: rho w^2 R^2/M",
             )
-            if p.text("rate", "") == "hughes_winget":
+            if p.scheme.rate == "hughes_winget":
                 carried = Finding(carried.name, carried.value)
             findings.append(carried)
             findings.append(
