@@ -20,6 +20,7 @@ import numpy.typing as npt
 from _manufactured import Solution
 from harness.case import Finding, Output, Parameters
 from harness.scene import DIM, Body, Scene, lattice, section, stable_dt
+from harness.theory import cell_symbols, grid_functions, point_offsets
 
 Array = npt.NDArray[np.float64]
 
@@ -126,9 +127,18 @@ def steps_of(p: Parameters, cells: int, frames: int) -> int:
 
 
 def mode(
-    ppc: int, cells: int, steps: int, frames: int, phase: float, periods: float, staggered: bool
+    ppc: int,
+    cells: int,
+    steps: int,
+    frames: int,
+    phase: float,
+    periods: float,
+    staggered: bool,
+    basis: str = "linear",
 ) -> dict[str, Array]:
     """Follow one wave of a bar in units of A, A omega and M k A.
+
+    Splines do not mirror waves at walls; theirs are followed with matrices.
 
     Returns
     -------
@@ -137,24 +147,41 @@ def mode(
         velocities are compared with the exact ones half a step earlier.
     """
     kh, tau = np.pi / cells, 2 * np.pi * periods / steps
-    offsets = (np.arange(ppc) + 0.5) / ppc
-    left, right = np.exp(-1j * kh * offsets), np.exp(1j * kh * (1.0 - offsets))
-    s, d = (1.0 - offsets) * left + offsets * right, (right - left) / kh
     exact_u, exact_v = np.sin(phase), np.cos(phase - 0.5 * tau * staggered)
-    u, v, t = (np.full(ppc, a, dtype=complex) for a in (exact_u, exact_v, 1j * exact_u))
-    wave = np.exp(1j * kh * (np.arange(cells)[:, None] + offsets)).ravel()
+    places = point_offsets(ppc * cells) * cells
+    wave = np.exp(1j * kh * places)
+    mirrored = basis not in ("quadratic", "cubic")
+    if mirrored:
+        # One cell stands for all; its points' amplitudes are factors of the wave.
+        s, d = (a[:, None] for a in cell_symbols(kh, ppc, basis=basis))
+        to_node, pull = s.conj().T / ppc, d.conj().T / (ppc * kh)
+        u, v, t = (np.full(ppc, a, dtype=complex) for a in (exact_u, exact_v, 1j * exact_u))
+        free = 1.0
+    else:
+        s, d = grid_functions(basis, places, cells, ppc)
+        mass = s.sum(axis=0)[:, None]
+        to_node, pull = s.T / mass, d.T / (mass * kh)
+        u, v, t = exact_u * np.imag(wave), exact_v * np.imag(wave), exact_u * np.real(wave)
+        free = np.ones(cells + 1)
+        free[[0, -1]] = 0.0
     errors: dict[str, list[Array]] = {"u": [], "v": [], "stress": []}
     for n in range(1, steps + 1):
-        grid = np.mean(s.conj() * v)
-        force = -tau * np.mean(d.conj() * t)
-        v += s * force
-        u += tau * s * (grid + force)
-        t += tau * d * (grid + force)
+        grid = free * (to_node @ v)
+        force = -tau * free * (pull @ t)
+        v = v + s @ force
+        u = u + tau * (s @ (grid + force))
+        t = t + tau / kh * (d @ (grid + force))
         if n % (steps // frames) == 0:
             angle = phase + n * tau
-            amplitudes = (u - np.sin(angle), v - np.cos(angle - 0.5 * tau), t - 1j * np.sin(angle))
-            for name, a in zip(errors, amplitudes, strict=True):
-                errors[name].append(np.imag(np.tile(a, cells) * wave))
+            now = np.sin(angle), np.cos(angle - 0.5 * tau)
+            if mirrored:
+                amplitudes = (u - now[0], v - now[1], t - 1j * now[0])
+                found = [np.imag(np.tile(a, cells) * wave) for a in amplitudes]
+            else:
+                shape, slope = np.imag(wave), np.real(wave)
+                found = [u - now[0] * shape, v - now[1] * shape, t - now[0] * slope]
+            for name, error in zip(errors, found, strict=True):
+                errors[name].append(error)
     return {name: np.array(values) for name, values in errors.items()}
 
 
@@ -170,6 +197,7 @@ def modal_errors(p: Parameters, cells: int, steps: int, frames: int) -> dict[str
             phase,
             p.number("periods", 1.0),
             bool(p.number("staggered", 0)),
+            p.mapping,
         )
         for phase in exact.phases
     ]
@@ -248,8 +276,11 @@ def follow_bar(p: Parameters, scene: Scene) -> list[tuple[Array, Array, Array]]:
             outside = ((s + quarter > cells) | (s - quarter < 0))[:, 0]
             weight[outside] = hat(s - nodes)[outside]
             gradient[outside] = hat_slope(s - nodes)[outside] / h
-        else:
+        elif p.mapping == "linear":
             weight, gradient = hat(s - nodes), hat_slope(s - nodes) / h
+        else:
+            weight, gradient = grid_functions(p.mapping, s[:, 0], cells, p.ppc)
+            gradient = gradient / h
         growth = 1 + amplitude * WAVE_NUMBER * slope * np.sin(omega * n * dt + phase)
         wave = amplitude * omega**2 * shape * np.sin(omega * n * dt + phase)
         load = wave * (1 / growth - 1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from harness.theory import grid_functions
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -21,8 +22,11 @@ class Bar:
     modulus: float
     spacing: float
     cells: int
-    #: Average the hats over half of each point's first box.
-    averaged: bool = False
+    #: Functions by their names in the matrix: `cpdi` averages hats over half of each point's first
+    #: box.
+    basis: str = "linear"
+    #: Points per cell, for boxes of uGIMP.
+    ppc: int = 1
 
     def __post_init__(self) -> None:
         """Take what does not change from the start."""
@@ -33,13 +37,16 @@ class Bar:
 
     def functions(self) -> tuple[Array, Array]:
         """Return values and derivatives (points, nodes)."""
+        if self.basis not in ("linear", "cpdi"):
+            values, slopes = grid_functions(self.basis, self.x / self.spacing, self.cells, self.ppc)
+            return values, slopes / self.spacing
         top = self.cells * self.spacing
         s = self.x / self.spacing
         cell = np.minimum(s.astype(int), self.cells - 1)
         nodes = np.arange(self.cells + 1)
         value = self.hats(self.x)
         slope = ((nodes == cell[:, None] + 1) * 1.0 - (nodes == cell[:, None])) / self.spacing
-        if not self.averaged:
+        if self.basis == "linear":
             return value, slope
         low, high = self.x - self.arm, self.x + self.arm
         whole = ((low >= 0.0) & (high <= top))[:, None]

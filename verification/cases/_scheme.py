@@ -1,6 +1,6 @@
 """The linear scheme written a second time, as matrices: small motions about points at rest.
 
-Explicit USL with FLIP, for any places of the points, any TYPE and both mappings, from its formulas:
+Explicit USL with FLIP, for any places of the points, any TYPE and all mappings, from its formulas:
 
     V_i = sum_p m_p N_i v_p / m_i,   f_i = -dt sum_p V_p B_pi^T s_p / m_i,
     v_p += N_p f,   u_p += dt N_p (V + f),   s_p += dt C B_p (V + f)
@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from _waves import SLIP, STICK
 from harness.scene import NVEL, Scene
+from harness.theory import grid_functions
 
 Array = npt.NDArray[np.float64]
 #: Mass at or below which a node is negligible, over the mean mass of the points.
@@ -48,19 +49,18 @@ def held_nodes(sim_type: int, cells: Sequence[int], codes: Sequence[int]) -> npt
 
 
 def functions(
-    x: Array, h: float, cells: int, quarter: Array, averaged: npt.NDArray[np.bool_]
+    basis: str, places: Array, cells: int, n: float, averaged: npt.NDArray[np.bool_]
 ) -> tuple[Array, Array]:
-    """Return the functions of the nodes along one direction and their slopes: (points, nodes)."""
-    nodes = np.arange(cells + 1)
+    """Return the functions of the nodes along one direction and their slopes in cells.
 
-    def hats(place: Array) -> Array:
-        return np.maximum(0.0, 1.0 - np.abs(place[:, None] / h - nodes))
-
-    cell = np.minimum(np.floor(x / h).astype(int), cells - 1)
-    slopes = ((nodes == cell[:, None] + 1).astype(float) - (nodes == cell[:, None])) / h
-    before, behind = hats(x - quarter), hats(x + quarter)
-    mean, rise = 0.5 * (before + behind), (behind - before) / (2.0 * quarter[:, None])
-    return np.where(averaged[:, None], mean, hats(x)), np.where(averaged[:, None], rise, slopes)
+    Both are (points, nodes); `places` and the boxes of the points, 1/n, are in cells. Where corner
+    averages would reach over a wall in any direction, the hats themselves count.
+    """
+    if basis != "cpdi":
+        return grid_functions(basis, places, cells, n)
+    plain, mean = (grid_functions(name, places, cells, n) for name in ("linear", "cpdi"))
+    chosen = averaged[:, None]
+    return np.where(chosen, mean[0], plain[0]), np.where(chosen, mean[1], plain[1])
 
 
 def product(factors: Sequence[Array]) -> Array:
@@ -90,9 +90,13 @@ class LinearScheme:
             points.x + quarter[:, None] <= np.array(scene.lengths)
         )
         averaged = np.all(inside, axis=1) & (scene.mapping == "cpdi")
-        lines = [
-            functions(points.x[:, d], h[d], scene.cells[d], quarter, averaged) for d in range(dim)
-        ]
+        # Boxes have one width in all directions; those of corner averages that of the point.
+        box = 4.0 * quarter[0] if scene.mapping == "cpdi" else scene.box * h[0]
+        lines = []
+        for d in range(dim):
+            place = points.x[:, d] / h[d]
+            w, dw = functions(scene.mapping, place, scene.cells[d], float(h[d] / box), averaged)
+            lines.append((w, dw / h[d]))
         self.values = product([w for w, _ in lines])
         slopes = [
             product([line[1] if e == d else line[0] for e, line in enumerate(lines)])

@@ -24,7 +24,8 @@ import numpy as np
 import numpy.typing as npt
 from harness.case import Parameters
 from harness.scene import DIM, Body, Points, Scene, lattice, pressure_wave_modulus, stable_dt
-from harness.theory import cell_symbols, near_nodes, node_functions
+from harness.scheme import FEWEST_CELLS as FEWEST
+from harness.theory import cell_symbols, grid_functions, near_nodes, node_functions
 
 Array = npt.NDArray[np.float64]
 
@@ -77,6 +78,8 @@ class Bar:
     #: Component in which the bar moves; by default along itself.
     component: int = -1
     values: Sequence[float] = ()
+    #: Whether the grid repeats along the bar.
+    periodic: bool = False
     axis: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -104,7 +107,7 @@ class Bar:
     def counts(self) -> tuple[list[int], list[int], list[int]]:
         """Return lower and upper corner of the bar, and the cells of the grid, in cells."""
         dim = DIM[self.p.sim_type]
-        width = int(self.p.number("width", 1 if dim == 3 else 2))
+        width = int(self.p.number("width", max(1 if dim == 3 else 2, FEWEST[self.p.mapping])))
         lower, upper = [0] * dim, [width] * dim
         upper[self.axis] = self.cells
         grid = list(upper)
@@ -149,7 +152,7 @@ class Bar:
         )
         pull = [0.0] * 3
         pull[self.axis] = gravity
-        return Scene(
+        made = Scene(
             self.p.sim_type,
             [n * self.h for n in grid],
             grid,
@@ -160,6 +163,9 @@ class Bar:
             self.p.mapping,
             gravity=pull[: len(body.points.velocity[0])],
         )
+        if self.periodic:
+            made.periodic = [d == self.axis for d in range(len(grid))]
+        return made
 
     def dt(self, t_stop: float, frames: int) -> float:
         """Return the time step."""
@@ -243,7 +249,7 @@ class DiscreteWave:
         """Return the rate at which the energy decays: E ~ exp(-rate t)."""
         return -2.0 * float(np.log(np.abs(self.eigenvalue(dt)))) / dt
 
-    def march(self, velocity: float, dt: float, steps: int) -> tuple[Array, Array]:
+    def march(self, velocity: complex, dt: float, steps: int) -> tuple[Array, Array]:
         """Return U and the sum of f after 0, 1, ... steps from rest at zero displacement.
 
         `velocity` is the velocity of the grid at the start.
@@ -268,54 +274,82 @@ def bar_wave(
     return DiscreteWave(c**2 * means.k2 / h**2, means.mu)
 
 
-def march_bar(
-    bar: Bar,
-    velocity: Array,
-    acceleration: Array,
-    dt: float,
-    steps: int,
-    every: int,
-) -> tuple[Array, Array]:
-    """March the discrete equations of small motions of a bar that is held at 0 and free at its end.
+def walls_reflect(p: Parameters) -> bool:
+    """Tell whether waves between walls are those of an endless grid, odd or even about the walls.
+
+    Splines next to a wall have less mass at the first node inside than elsewhere; the boxes of
+    uGIMP, as the points of a filled grid, do not reach over walls.
+    """
+    return p.mapping not in ("quadratic", "cubic")
+
+
+class BarScheme:
+    """The discrete equations of small motions of a bar as matrices, for every basis, with its ends.
+
+    Masses are those of `values` summed over the points, in masses of a full node.
 
     Parameters
     ----------
     bar : Bar
-        The bar.
-    velocity : Array
-        Velocities of the points at the start, by rising place.
-    acceleration : Array
-        Accelerations of the nodes by loads.
-    dt, steps, every : float, int, int
-        Time step, number of steps, steps between two rows of the result.
-
-    Returns
-    -------
-    tuple[Array, Array]
-        Displacements of the nodes and sums of their velocity increments: (frames, nodes).
+        The bar; held at 0, and at its end unless that is free.
+    held : bool, optional
+        Whether its end is held; by default if its wall is smooth.
     """
-    n, h, nodes = bar.p.ppc, bar.h, np.arange(bar.cells + 1)
-    weights = np.maximum(0.0, 1.0 - np.abs(((np.arange(n * bar.cells) + 0.5) / n)[:, None] - nodes))
-    mass = weights.sum(axis=0)
-    to_nodes = weights.T / mass[:, None]
-    loop = to_nodes @ weights
-    v, u, total = to_nodes @ velocity, np.zeros(len(nodes)), np.zeros(len(nodes))
-    v[0] = 0.0
-    shown = [(u, total)]
-    for step in range(1, steps + 1):
-        pull = n * bar.c**2 / h**2 * np.diff(u)
-        force = np.zeros(len(nodes))
-        force[:-1] += pull
-        force[1:] -= pull
-        f = dt * (force / mass + acceleration)
-        f[0] = 0.0
-        u = u + dt * (v + f)
-        v = v + loop @ f
-        v[0] = 0.0
-        total = total + f
-        if step % every == 0:
-            shown.append((u, total))
-    return np.array([u for u, _ in shown]), np.array([total for _, total in shown])
+
+    def __init__(self, bar: Bar, held: bool | None = None) -> None:
+        n, h, grid = bar.p.ppc, bar.h, bar.counts()[2][bar.axis]
+        places = (np.arange(n * bar.cells) + 0.5) / n + bar.p.number("shift", 0.0)
+        self.x = places * h
+        self.values, slopes = grid_functions(bar.p.mapping, places, grid, n)
+        self.slopes = slopes / h
+        self.mass = self.values.sum(axis=0) / n
+        share = np.where(self.mass > 0.0, 1.0 / np.maximum(self.mass, 1e-300), 0.0)[:, None] / n
+        self.to_nodes = share * self.values.T
+        self.filter = self.to_nodes @ self.values
+        self.stiffness = bar.c**2 * share * (self.slopes.T @ self.slopes)
+        self.free = np.ones(grid + 1, dtype=bool)
+        self.free[0] = False
+        if bar.end == SLIP if held is None else held:
+            self.free[-1] = False
+
+    def march(
+        self, velocity: Array, acceleration: Array, dt: float, steps: int, every: int
+    ) -> tuple[Array, Array]:
+        """Return displacements of the nodes and sums of their velocity increments.
+
+        Parameters
+        ----------
+        velocity : Array
+            Velocities of the points at the start, by rising place.
+        acceleration : Array
+            Accelerations of the nodes by loads.
+        dt, steps, every : float, int, int
+            Time step, number of steps, steps between two rows of the results.
+
+        Returns
+        -------
+        tuple[Array, Array]
+            Both (frames, nodes).
+        """
+        v = np.where(self.free, self.to_nodes @ velocity, 0.0)
+        u, total = np.zeros(len(v)), np.zeros(len(v))
+        shown = [(u, total)]
+        for step in range(1, steps + 1):
+            f = np.where(self.free, dt * (acceleration - self.stiffness @ u), 0.0)
+            u = u + dt * (v + f)
+            v = np.where(self.free, v + self.filter @ f, 0.0)
+            total = total + f
+            if step % every == 0:
+                shown.append((u, total))
+        return np.array([u for u, _ in shown]), np.array([total for _, total in shown])
+
+    def eigenvalue(self, dt: float, guess: float) -> complex:
+        """Return the eigenvalue of a step whose frequency is next to a guess."""
+        live = self.free & (self.mass > 0.0)
+        one, z = np.eye(np.count_nonzero(live)), dt**2 * self.stiffness[np.ix_(live, live)]
+        step = np.block([[one, -self.filter[np.ix_(live, live)] @ z], [one, one - z]])
+        values = np.linalg.eigvals(step)
+        return complex(values[np.argmin(np.abs(np.angle(values) - guess * dt))])
 
 
 def fit_oscillation(times: Array, values: Array, guess: float) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from _freebodies import ALL_DIGITS, join
 from _self_weight import FAR, self_weight, uniform_gravity
 from harness.case import Case, Finding, Measures, Output, Parameters, Results, below, near
 from harness.scene import DIM, UP, Array, Body, Scene, lattice, pressure_wave_modulus
+from harness.theory import node_functions
 
 SPACING, DENSITY, YOUNG, POISSON = 0.1, 1000.0, 1e6, 0.3
 MODULUS = pressure_wave_modulus(YOUNG, POISSON)
@@ -59,28 +60,41 @@ def measure(p: Parameters, out: Output) -> Measures:
     height = np.round(frame.x[:, up] / SPACING).astype(int)
     sums = np.bincount(height, weights=column) / pull
     crossed = np.array([sums[APART * (i + 1)] for i in range(p.cells)])
-    above = np.array([sums[APART * (i + 1) + 1] for i in range(p.cells)])
-    below_ = np.array([sums[APART * (i + 1) - 1] for i in range(p.cells)])
-    s, arm = places(p), 0.25 / p.ppc
-
-    def hat(x: Array) -> Array:
-        return np.maximum(0.0, 1.0 - np.abs(x))
+    beside = {
+        side: np.array([sums[APART * (i + 1) + side] for i in range(p.cells)])
+        for side in (-2, -1, 1, 2)
+    }
 
     def slope(x: Array) -> Array:
-        if p.mapping == "linear":
-            return np.where(np.abs(x) < 1.0, -np.sign(x), 0.0)
-        return (hat(x + arm) - hat(x - arm)) / (2.0 * arm)
+        return node_functions(p.mapping, x, p.ppc)[1]
 
+    s = places(p)
     worst = max(
         float(np.max(np.abs(found + slope(s - shift))))
-        for found, shift in ((crossed, 0.0), (above, 1.0), (below_, -1.0))
+        for shift, found in ((0, crossed), *beside.items())
     )
     return {
         "profile": worst,
         "jump": float(np.max(np.abs(np.diff(crossed)))),
-        "neighbour": float(np.max(np.abs(np.diff(above)))),
-        "sum": float(np.max(np.abs(crossed + above + below_))),
+        "neighbour": float(np.max(np.abs(np.diff(beside[1])))),
+        "sum": float(np.max(np.abs(crossed + sum(beside.values())))),
     }
+
+
+def largest_changes(p: Parameters) -> tuple[float, float, str]:
+    """Return the largest change of the slope between places, at a node and beside it; and why."""
+    step = 1.0 / p.cells
+    if p.mapping == "linear":
+        return 2.0, 1.0, "the derivative jumps from 1/h to -1/h"
+    if p.mapping == "cpdi":
+        jump = 4.0 * p.ppc * step
+        return jump, 0.5 * jump, "a ramp of width h/(2 n) between 1/h and -1/h"
+    if p.mapping == "cubic":
+        why = "the second derivative is -2 + 3|x| within a cell, 2 - |x| in the next"
+        return 2.0 * step - 0.75 * step**2, step - 0.5 * step**2, why
+    wide = p.ppc if p.mapping == "ugimp" else 1
+    why = "a ramp of width h/n (uGIMP) or h between 1/h and -1/h"
+    return 2.0 * wide * step, wide * step, why
 
 
 def judge(r: Results) -> list[Finding]:
@@ -92,12 +106,7 @@ def judge(r: Results) -> list[Finding]:
         findings.append(below(f"error of the profile{end}", m["profile"], 1e-7, "closed form"))
         why = "derivatives sum to 0; 1e-10: the weight of the points"
         findings.append(below(f"sum over the nodes{end}", m["sum"], 1e-9, why))
-        if p.mapping == "linear":
-            jump, beside, why = 2.0, 1.0, "the derivative jumps from 1/h to -1/h"
-        else:
-            step = 1.0 / p.cells
-            jump, beside = 4.0 * p.ppc * step, 2.0 * p.ppc * step
-            why = "a ramp of width h/(2 n) between 1/h and -1/h"
+        jump, beside, why = largest_changes(p)
         findings.append(near(f"largest change on the node{end}", m["jump"], jump, 1e-6, why))
         findings.append(near(f"largest change beside it{end}", m["neighbour"], beside, 1e-6, why))
     return findings
@@ -112,7 +121,8 @@ resolution says how many), each alone in its neighbourhood. The force on the nod
 V\,dN/dx$. *Linear functions*: it jumps from $-T V/h$ to $T V/h$ where the point passes the node,
 and by half of that on the nodes beside it, whatever the time step; with one point a cell by $2 T
 h^{d-1}$. *Corner averages*: a ramp of width $h/(2n)$, so that the largest change between places a
-distance $D$ apart is $4 n D/h$ times $T V/h$. The whole profile is compared with the closed
+distance $D$ apart is $4 n D/h$ times $T V/h$. *uGIMP, quadratic*: ramps of width $h/n$ and $h$.
+*Cubic*: no kink. The whole profile is compared with the closed
 forms.
 """,
     source="Elementary",

@@ -16,6 +16,7 @@ from harness.scene import (
     pressure_wave_modulus,
     stable_dt,
 )
+from harness.scheme import FEWEST_CELLS
 
 LENGTH, DENSITY, YOUNG, POISSON = 0.7, 1000.0, 1e6, 0.3
 MODULUS = pressure_wave_modulus(YOUNG, POISSON)
@@ -26,6 +27,11 @@ FRAMES, PERIODS = 8, 1.0
 NAMES = ("position", "velocity", "stress", "lateral motion", "lateral stress")
 #: Cells across the bar, by directions of the grid.
 WIDTH = {1: 1, 2: 2, 3: 1}
+
+
+def width(p: Parameters) -> int:
+    """Return cells across the bar."""
+    return max(WIDTH[DIM[p.sim_type]], FEWEST_CELLS[p.mapping])
 
 
 def axis(p: Parameters) -> int:
@@ -41,8 +47,8 @@ def amplitude(p: Parameters) -> float:
 def start(p: Parameters) -> Points:
     """Return a bar that fills the box, with the velocities of a standing wave."""
     dim, along = DIM[p.sim_type], axis(p)
-    counts, k = [WIDTH[dim] * p.ppc] * dim, np.pi / LENGTH
-    upper = [WIDTH[dim] * LENGTH / p.cells] * dim
+    counts, k = [width(p) * p.ppc] * dim, np.pi / LENGTH
+    upper = [width(p) * LENGTH / p.cells] * dim
     counts[along], upper[along] = p.cells * p.ppc, LENGTH
 
     def velocity(x: np.ndarray) -> np.ndarray:
@@ -56,7 +62,7 @@ def start(p: Parameters) -> Points:
 def scene(p: Parameters) -> Scene:
     """Return the scene: smooth walls all around."""
     dim = DIM[p.sim_type]
-    cells = [WIDTH[dim]] * dim
+    cells = [width(p)] * dim
     cells[axis(p)] = p.cells
     t_stop = PERIODS * 2.0 * LENGTH / WAVE_SPEED
     return Scene(
@@ -86,7 +92,8 @@ def measure(p: Parameters, out: Output) -> Measures:
         MODULUS,
         LENGTH / p.cells,
         p.cells,
-        p.mapping == "cpdi",
+        p.mapping,
+        p.ppc,
     )
     speed = amplitude(p) * np.pi * WAVE_SPEED
     worst = dict.fromkeys(NAMES, 0.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from _waves import LENGTH, Bar, DiscreteWave, bar_wave, fit_oscillation, interpolate
+from _waves import LENGTH, Bar, DiscreteWave, bar_wave, fit_oscillation, interpolate, walls_reflect
 from harness.case import Case, Finding, Measures, Output, Parameters, Results, below, near
 from harness.norms import linf
 from harness.scene import Scene
@@ -22,7 +22,7 @@ def wave_number(p: Parameters) -> float:
 
 def bar(p: Parameters) -> Bar:
     """Return the bar."""
-    return Bar(p, cells=CELLS)
+    return Bar(p, cells=CELLS, periodic=not walls_reflect(p))
 
 
 def time_step(p: Parameters) -> float:
@@ -33,7 +33,7 @@ def time_step(p: Parameters) -> float:
 def shape(p: Parameters, x: np.ndarray) -> np.ndarray:
     """Return what points get of a sine on the grid."""
     k = wave_number(p)
-    return interpolate(lambda s: np.sin(k * s), x, bar(p).h)
+    return interpolate(lambda s: np.sin(k * s), x, bar(p).h, p.mapping, p.ppc)
 
 
 def scene(p: Parameters) -> Scene:
@@ -47,7 +47,8 @@ def scene(p: Parameters) -> Scene:
 def wave(p: Parameters) -> DiscreteWave:
     """Return the wave of the discrete equations."""
     this = bar(p)
-    return bar_wave(wave_number(p) * this.h, p.ppc, this.c, this.h, p.number("shift", 0.0))
+    shift = p.number("shift", 0.0)
+    return bar_wave(wave_number(p) * this.h, p.ppc, this.c, this.h, shift, p.mapping)
 
 
 def measure(p: Parameters, out: Output) -> Measures:

@@ -39,11 +39,20 @@ def weight(p: Parameters) -> float:
 
 def sliver_grows(p: Parameters) -> bool:
     """Tell whether the last node grows when the node before it is as good as fixed."""
-    mu, slope, quarter = weight(p), 1.0, 0.25 / p.ppc
-    if p.mapping == "cpdi" and weight(p) < quarter:
-        mu = 0.5 * (weight(p) + quarter)
-        slope = mu / quarter
+    distance = np.array([weight(p) - reach(p)])
+    if p.mapping == "cpdi" and weight(p) >= 0.25 / p.ppc:
+        mu, slope = weight(p), 1.0  # the whole box in the last cell
+    else:
+        mu, slope = (float(a[0]) for a in node_functions(p.mapping, distance, p.ppc))
     return courant(p) ** 2 * slope**2 / mu > 4.0 / (2.0 - mu)
+
+
+def reach(p: Parameters) -> float:
+    """Return the distance from a node, in cells, at which its function ends.
+
+    That of a corner average is taken for that of a hat: a quarter of the box less.
+    """
+    return {"ugimp": 1.0 + 0.5 / p.ppc, "quadratic": 1.5, "cubic": 2.0}.get(p.mapping, 1.0)
 
 
 def walls() -> Walls:
@@ -52,9 +61,10 @@ def walls() -> Walls:
 
 
 def scene(p: Parameters) -> Scene:
-    """Return a bar whose last point lies `weight` cells beyond a grid line."""
+    """Return a bar whose last point lies `weight` cells beyond where it reaches its last node."""
     h, c, n = 1.0 / CELLS, wave_speed(p), p.ppc
-    last = 1.0 + weight(p) * h
+    # On a grid line less the part of the reach that is no whole cell.
+    last = 1.0 + (weight(p) + np.ceil(reach(p)) - reach(p)) * h
     x = (last - h / n * np.arange(CELLS * n + 1))[::-1]
     x = x[x > 0.0][:, None]
     volume = np.full(len(x), h / n)
@@ -169,10 +179,13 @@ $\mu = \xi$, $z = \mathrm{CFL}^2/\xi$ in the equations of a step, which grow for
 to 7 % more, since the node before is not fixed). This is a property of the scheme. With the
 corner-averaged functions the point has the weight $(\xi+q)/2$ and the slope $(\xi+q)/(2qh)$,
 $q = 1/(4n)$, while it is within a quarter of its box of the grid line: bounded when
-$\mathrm{CFL}^2 < 4q/(2-q)$, a Courant number of 0.52 with two points per cell. A node with less
-than $10^{-9}$ of the mean mass of the points does not take part in velocity gradients; what grows
-then does so slowly, by $3\cdot10^{-4}$ a step. All growth is compared with the eigenvalues of the
-linear scheme, as matrices.
+$\mathrm{CFL}^2 < 4q/(2-q)$, a Courant number of 0.52 with two points per cell. Smoother functions
+have, at a distance $\delta$ (in cells) within the end of their reach, a weight and a slope with
+$z/\mathrm{CFL}^2$ = slope$^2$/weight of $2n$ (uGIMP), 2 (quadratic) and $3\delta/2$ (cubic): stable
+for Courant numbers below $1/\sqrt n$ with uGIMP, 1 with quadratic functions. A node with less than
+$10^{-9}$ of the mean mass of the points does not take part in velocity gradients; what grows then
+does so slowly, by $3\cdot10^{-4}$ a step. All growth is compared with the eigenvalues of the linear
+scheme, as matrices.
 
 Of the other schemes MUSL and USF are stable at any weight, since the velocities that their
 gradients come from are means of those of points. The affine fields of hats (APIC, MLS) bring the

@@ -21,12 +21,12 @@ def scene(p: Parameters) -> Scene:
 
 def measure(p: Parameters, out: Output) -> Measures:
     """Return the errors."""
-    return measure_mode(p, out, wave_number(p))
+    return measure_mode(p, out, wave_number(p), FREE)
 
 
 def judge(r: Results) -> list[Finding]:
     """Compare with theory."""
-    return judge_mode(r, wave_number)
+    return judge_mode(r, wave_number, FREE)
 
 
 CASE = Case(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from _waves import DENSITY, LENGTH, SLIP, TRACTION, Bar, Walls, interpolate, march_bar, slope
+from _waves import DENSITY, LENGTH, SLIP, TRACTION, Bar, BarScheme, Walls
 from harness.case import Case, Finding, Measures, Output, Parameters, Results, below, near
 from harness.norms import Errors, l1, linf
 from harness.scene import DIM, Scene
@@ -60,15 +60,12 @@ def measure(p: Parameters, out: Output) -> Measures:
     """Return errors, overshoots and the difference from theory."""
     this, points = bar(p), out.scene.bodies[0].points
     x, volume = points.x[:, this.axis], points.measure
+    scheme = BarScheme(this, held=False)
+    line = np.searchsorted(scheme.x, x - 1e-9 * this.h)
     load = np.zeros(p.cells + 1)
-    load[-1] = STRAIN * this.modulus / (DENSITY * 0.5 * this.h)
-    theory, _ = march_bar(
-        this,
-        np.zeros(p.cells * p.ppc),
-        load,
-        out.scene.dt,
-        out.scene.steps,
-        out.scene.steps // FRAMES,
+    load[-1] = STRAIN * this.modulus / (DENSITY * scheme.mass[-1] * this.h)
+    theory, _ = scheme.march(
+        np.zeros(len(scheme.x)), load, out.scene.dt, out.scene.steps, out.scene.steps // FRAMES
     )
     errors, in_time, in_middle, end = Errors(volume), [], [], []
     highest = lowest = stress_deviation = deviation = 0.0
@@ -81,12 +78,8 @@ def measure(p: Parameters, out: Output) -> Measures:
         in_time.append(l1(s - exact_s, volume))
         in_middle.append(l1((s - exact_s)[middle], volume[middle]))
         nodes = theory[number] / (STRAIN * LENGTH)
-
-        def of_nodes(place: np.ndarray, nodes: np.ndarray = nodes) -> np.ndarray:
-            return nodes[np.clip(np.rint(place / this.h).astype(int), 0, p.cells)]
-
-        deviation = max(deviation, linf(u - interpolate(of_nodes, x, this.h)))
-        stress_deviation = max(stress_deviation, linf(s - LENGTH * slope(of_nodes, x, this.h)))
+        deviation = max(deviation, linf(u - (scheme.values @ nodes)[line]))
+        stress_deviation = max(stress_deviation, linf(s - LENGTH * (scheme.slopes @ nodes)[line]))
         highest, lowest = max(highest, float(np.max(s))), min(lowest, float(np.min(s)))
         end.append(float(np.mean(u[x > LENGTH - this.h])))
     return {
@@ -137,7 +130,9 @@ def judge(r: Results) -> list[Finding]:
             "of the end, which grows by 2 u/h, for what is not linear"
         )
         # (3 kappa h^2 ct)^(1/3) of the Airy function after ct = 2L.
-        width = (6.0 * dispersion_constant(p.ppc)) ** (1.0 / 3.0) * p.cells ** (-2.0 / 3.0)
+        width = (6.0 * dispersion_constant(p.ppc, p.mapping)) ** (1.0 / 3.0) * p.cells ** (
+            -2.0 / 3.0
+        )
         findings += [
             below(f"d_u, {label}", m["d_u"], 8.0 * STRAIN * p.cells, linear),
             below(f"d_s, {label}", m["d_s"], 16.0 * STRAIN * p.cells, linear),

@@ -190,6 +190,18 @@ def series(n: int, shift: float = 0.0, basis: str = "linear") -> tuple[float, fl
     return 0.5 * (a + float(np.mean(d3)) / 3.0 - float(np.mean(d2**2)) / 4.0), a
 
 
+def stress_constant(n: int, shift: float = 0.0, basis: str = "linear") -> float:
+    """Return b of the error b kh, relative to its amplitude, of the stress of a wave at points.
+
+    D = ik(1 + ikh d_2/2 + ...), so that b is the root mean square of d_2/2: 0 for splines, the mean
+    distance from the middle of a cell, sqrt((1 - 1/n^2)/12), for linear functions.
+    """
+    places = point_offsets(n, shift)
+    distance = places[:, None] - near_nodes(places)
+    d2 = np.sum(node_functions(basis, distance, n)[1] * distance**2, axis=1)
+    return 0.5 * float(np.sqrt(np.mean(d2**2)))
+
+
 def dispersion_constant(n: int, basis: str = "linear") -> float:
     """Return kappa of omega_h/omega = 1 - kappa (kh)^2 for symmetric points.
 
@@ -224,6 +236,45 @@ def stability_limit(n: int, shift: float = 0.0, basis: str = "linear") -> float:
         if k2 > 0.0:
             limits.append(np.sqrt(4.0 / ((2.0 - mu) * k2)))
     return float(min(limits))
+
+
+def crossing_noise(n: int, stretch: float, basis: str = "linear") -> tuple[float, float]:
+    """Return the largest and the mean nodal force of a uniform stress over stress and area.
+
+    Points lie F h/n apart, F the stretch, and a cell holds n/F of their spacings, e more or less
+    than a whole number. The force at a node is F/n times the second difference, with the step e, of
+    a saw tooth that jumps at the points, smoothed over the boxes that make the function of a hat:
+    none, 1/F of a spacing (uGIMP), half of that (cpdi), a cell once or twice (splines). Each box
+    makes T' = (T(x + b/2) - T(x - b/2))/b, where whole spacings of b do not count. Splines of
+    degree p give F/n (e F/n)^(p-1) times the derivative of the spline, e wide instead of h, whose
+    largest value is 1, 1, 2/3 and whose square has the integral 2, 1, 2/3.
+
+    Parameters
+    ----------
+    n : int
+        Points per cell before the stretch.
+    stretch : float
+        F; so close to 1 that the patterns of neighbouring points do not meet.
+    basis : str
+        A mapping of the matrix.
+    """
+    f = stretch
+    e = abs(n / f - round(n / f))
+    if basis == "cpdi":
+        b = 0.5 / f
+        if e > min(b, 1 - b):
+            raise ValueError("the kinks of the smoothed saw tooth meet: choose a smaller strain")
+        return f / n * e / b, f / n * e / b * float(np.sqrt(4 * e / 3))
+    if basis == "ugimp":
+        b = abs(1.0 - 1.0 / f)
+        return f / n * b * f, f / n * b * f * float(np.sqrt(2 * e - b))
+    degree, peak, square = {
+        "linear": (1, 1.0, 2.0),
+        "quadratic": (2, 1.0, 1.0),
+        "cubic": (3, 2.0 / 3.0, 2.0 / 3.0),
+    }[basis]
+    scale = f / n * (e * f / n) ** (degree - 1)
+    return scale * peak, scale * float(np.sqrt(square * e))
 
 
 def energy_loss_per_period(kh: float, n: int, cfl: float, basis: str = "linear") -> float:
