@@ -142,9 +142,10 @@ class ModeSteps:
         return float(np.sqrt(2.0 * (1.0 + self.kept) / (self.k2 * pull)))
 
     def energy(self, v: Array | float, u: Array | float, cfl: float) -> Array | float:
-        """Return the quadratic form of (V, U/dt) that a step multiplies by its determinant.
+        """Return the quadratic form of (V, u = U/dt) that a step multiplies by its determinant.
 
-        V^2 + gained z u^2 + b V u, b = (kept - 1 - z) + ... from the matrix A: v x' of v and A v.
+        V u' - u V', the area between a state and the next one, is a modified energy: V^2 + mu z u^2
+        - mu z V u for MUSL with FLIP.
         """
         a = self.matrix(cfl)
         return a[1, 0] * v**2 + (a[1, 1] - a[0, 0]) * v * u - a[0, 1] * u**2
