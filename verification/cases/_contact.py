@@ -74,7 +74,12 @@ def contact_normal(nodes: Frame, first: str, second: str) -> Array:
 
 def reach(n: int, mapping: str) -> float:
     """Return how far from a node, in cells, a point still gives it mass."""
-    return 1.0 + (CORNER / n if mapping == "cpdi" else 0.0)
+    return {
+        "cpdi": 1.0 + CORNER / n,
+        "ugimp": 1.0 + 0.5 / n,
+        "quadratic": 1.5,
+        "cubic": 2.0,
+    }.get(mapping, 1.0)
 
 
 def contact_gap(n: int, mapping: str, phase: float) -> float:

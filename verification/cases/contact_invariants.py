@@ -169,7 +169,8 @@ def judge(r: Results) -> list[Finding]:
         eps = 2.2e-16
         steps = round(run.stop / run.dt)
         # Sums over the points of a node round off at the relative speed of their momenta.
-        sum_error = 4.0 * eps * (2 * p.ppc) ** run.dim
+        width = {"ugimp": 3, "quadratic": 3, "cubic": 4}.get(p.mapping, 2)
+        sum_error = 4.0 * eps * (width * p.ppc) ** run.dim
         if run.kind == "first_step":
             findings += [
                 below(f"F_1 + F_2 at the nodes, {label}", m["balance"], 0.0, "f1 + F, f2 - F"),

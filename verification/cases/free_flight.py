@@ -50,9 +50,15 @@ def gravity(p: Parameters) -> float:
     return p.number("gravity", 0) * 2.0 * FALL * SPACING / duration(p) ** 2
 
 
+def ring(p: Parameters) -> int:
+    """Return the radius of the ring; wider functions need more room between the bodies."""
+    wider = {"quadratic": 3, "cubic": 6}.get(p.mapping, 0) if DIM[p.sim_type] > 1 else 1
+    return RING[DIM[p.sim_type]] + wider
+
+
 def half_width(p: Parameters) -> int:
     """Return cells from the middle of the grid to its faces."""
-    return RING[DIM[p.sim_type]] + p.cells + 4 + int(p.number("gravity", 0) * FALL)
+    return ring(p) + p.cells + 4 + int(p.number("gravity", 0) * FALL)
 
 
 def flights(p: Parameters) -> list[Points]:
@@ -67,7 +73,7 @@ def flights(p: Parameters) -> list[Points]:
     for first, way in ways:
         start = np.full(DIM[p.sim_type], float(middle))
         start[0] = first
-        corner = np.round(start + RING[DIM[p.sim_type]] * way)
+        corner = np.round(start + ring(p) * way)
         velocity = np.zeros(NVEL[p.sim_type])
         velocity[: len(way)] = speed(p) * way
         if p.sim_type == 5:
@@ -144,7 +150,8 @@ def measure(p: Parameters, out: Output) -> Measures:
 def bounds(p: Parameters) -> dict[str, float]:
     """Return the round-off of sums over the points of a node, added up over the way."""
     dim, way, slow = DIM[p.sim_type], p.cells, 1.0 / p.number("speed", 10.0)
-    terms = (2 * p.ppc) ** dim + 2
+    width = {"ugimp": 3, "quadratic": 3, "cubic": 4}.get(p.mapping, 2)
+    terms = (width * p.ppc) ** dim + 2
     scale = 1.0 + (OUT_OF_PLANE if p.sim_type == 5 else 0.0)
     stress = 2 * dim * terms * EPS * way * scale
     velocity = stress * min(way * slow**2, 4.0 * slow) + 4 * EPS * (1 + steps(p) * (gravity(p) > 0))

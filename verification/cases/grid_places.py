@@ -158,7 +158,8 @@ def judge(r: Results) -> list[Finding]:
     for p, m in r:
         end = f", {p.cells} cells"
         # A point on a node gives its cell's far node a weight of 4 eps.
-        terms = (2 * p.ppc + 1) ** DIM[p.sim_type]
+        width = {"ugimp": 3, "quadratic": 3, "cubic": 4}.get(p.mapping, 2)
+        terms = (width * p.ppc + 1) ** DIM[p.sim_type]
         small = (8 + terms) * DIM[p.sim_type] * EPS
         findings += [
             below(f"nodal mass over mass less 1{end}", m["mass"], small, "sum N = 1"),

@@ -46,10 +46,10 @@ def judge(r: Results) -> list[Finding]:
             name = f"lost at the faces, {p.cells} cells"
             found.append(Finding(name, lost, low, 1.0, 1.0, reason))
         return found
-    if r.first.mapping == "cpdi":
+    if r.first.mapping != "linear":
         for p, m in r:
             name = f"lost at the faces, {p.cells} cells"
-            reason = "corner-averaged: weight and gradient of a node vanish together"
+            reason = "averaged and smooth functions: weight and gradient of a node vanish together"
             found.append(Finding(name, 1.0 - m["finished"], 0.0, 0.0, 0.0, reason))
     reason = "rotation of order 1 in dt, spin lost in a layer of h at the faces of order 2"
     return found + fitted(rest, "u_l2", 1.0, 2.1, reason)

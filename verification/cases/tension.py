@@ -6,6 +6,7 @@ import numpy as np
 from _freebodies import ALL_DIGITS, free_box, join
 from harness.case import Case, Finding, Measures, Output, Parameters, Results
 from harness.scene import DIM, NVEL, UP, Array, Body, Points, Scene, lattice
+from harness.scheme import FEWEST_CELLS
 
 SPACING, DENSITY, YOUNG = 0.1, 1000.0, 1e6
 WAVE_SPEED = float(np.sqrt(YOUNG / DENSITY))
@@ -19,7 +20,8 @@ WIDTH = {1: 1, 2: 1, 3: 1}
 
 def splits(p: Parameters) -> float:
     """Return stretch from which on neighbours can be without common node."""
-    return p.ppc + (0.5 if p.mapping == "cpdi" else 0.0)
+    reach = {"cpdi": 1.0 + 0.25 / p.ppc, "ugimp": 1.0 + 0.5 / p.ppc, "quadratic": 1.5, "cubic": 2.0}
+    return p.ppc * (2.0 * reach.get(p.mapping, 1.0) - 1.0)
 
 
 def pairs(p: Parameters) -> bool:
@@ -61,7 +63,7 @@ def pair_scene(p: Parameters) -> Scene:
 def bar_scene(p: Parameters) -> Scene:
     """Return a bar with velocities in proportion to the distance from the middle."""
     dim, up, length = DIM[p.sim_type], UP[p.sim_type], p.cells * SPACING
-    counts = [WIDTH[dim]] * dim
+    counts = [max(WIDTH[dim], FEWEST_CELLS[p.mapping])] * dim
     counts[up] = int(p.cells * LARGEST) + 6
     lower, upper = np.zeros(dim), np.array(counts, float)
     lower[up] = counts[up] / 2 - p.cells / 2
@@ -127,7 +129,9 @@ def judge(r: Results) -> list[Finding]:
             parted.expected = min(1.0, max(0.0, share))
             parted.low = parted.expected - 1.5 / p.cells
             parted.high = parted.expected + 1.5 / p.cells
-            parted.reason = "(F - n)/n, averages (F - n - 1/2)/n: phases at which the supports miss"
+            parted.reason = (
+                "(F - F_0)/n, F_0 as in the statement: phases at which the supports miss"
+            )
             both = Finding(f"pairs of which only one feels{end}", m["one-sided"], 0.0, 0.0)
             both.reason = "sharing a node is mutual"
             findings += [parted, both]
@@ -154,10 +158,11 @@ CASE = Case(
     title="Tension to numerical fracture",
     statement=r"""
 Neighbours can lose their last common node when their distance $F h/n$ exceeds what the functions
-reach: $h$ for linear functions, $h + h/(2n)$ for corner averages over boxes that do not grow. So
-a bar with $n$ points a cell can break **from $F = n$ on, with averages from $F = n + 1/2$**.
+reach: $h$ for linear functions, $h + h/(2n)$ for corner averages over boxes that do not grow,
+$h + h/n$ for uGIMP, $2h$ and $3h$ for quadratic and cubic splines. So a bar with $n$ points a cell
+can break **from $F_0 = n$ on, with averages from $n + 1/2$, uGIMP $n + 1$, splines $2n$, $3n$**.
 *Pairs* (`stretch`) of points at a distance $F h/n$ at all phases to the nodes fly apart: the
-share $(F - n)/n$ or $(F - n - 1/2)/n$ of them must see no velocity gradient, both points of a
+share $(F - F_0)/n$ of them must see no velocity gradient, both points of a
 pair alike.
 
 *Bar*: velocities grow in proportion to the distance from the middle, the ends at 20 times the
