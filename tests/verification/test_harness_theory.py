@@ -210,3 +210,61 @@ def test_seams_carry_the_symbols(basis: str) -> None:
     back = np.exp(1j * k * x)
     assert values @ wave == pytest.approx(np.tile(s, cells) * back, rel=1e-12)
     assert slopes @ wave == pytest.approx(np.tile(d, cells) * back, rel=1e-12)
+
+
+@pytest.mark.parametrize("basis", theory.BASES)
+@pytest.mark.parametrize(("n", "stretch"), [(1, 1.03), (2, 1.01), (2, 0.98), (3, 1.02), (4, 0.985)])
+def test_crossing_noise_is_that_of_direct_sums(basis: str, n: int, stretch: float) -> None:
+    """Nodes at all places of a lattice, 1/4000 of a spacing apart; patterns are 0.015 and wider."""
+    places = np.linspace(0.0, 1.0, 4001)[:-1] * stretch / n
+    points = (np.arange(-6 * n, 6 * n) + 0.5) * stretch / n
+    distance = points[None, :] - places[:, None]
+    force = -stretch / n * np.sum(theory.node_functions(basis, distance, n)[1], axis=1)
+    peak, mean = theory.crossing_noise(n, stretch, basis)
+    assert np.max(np.abs(force)) == pytest.approx(peak, rel=2e-2)
+    assert np.sqrt(np.mean(force**2)) == pytest.approx(mean, rel=2e-2)
+
+
+@pytest.mark.parametrize(
+    ("basis", "stretch", "peak", "rel"),
+    [
+        ("linear", 1.157, 0.579, 1e-3),
+        ("ugimp", 1.01, 5.05e-3, 1e-3),
+        ("quadratic", 1.05, 2.63e-2, 3e-3),
+        ("quadratic", 1.157, 9.09e-2, 2e-3),
+        ("cubic", 1.05, 8.2e-4, 0.1),
+        ("cubic", 1.157, 9.5e-3, 0.01),
+    ],
+)
+def test_measured_crossing_noise(basis: str, stretch: float, peak: float, rel: float) -> None:
+    """Two points per cell; the values of cubic functions were measured at few nodes."""
+    assert theory.crossing_noise(2, stretch, basis)[0] == pytest.approx(peak, rel=rel)
+
+
+def test_noise_law_needs_patterns_that_do_not_meet() -> None:
+    """Corner averages at large strain."""
+    with pytest.raises(ValueError, match="smaller strain"):
+        theory.crossing_noise(4, 1.14, "cpdi")
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 5])
+def test_stress_constant(n: int) -> None:
+    """Distance from the middle of a cell for linear functions, 0 for splines; and the symbols."""
+    mean = math.sqrt((1.0 - 1.0 / n**2) / 12.0)
+    for basis in ("linear", "cpdi", "ugimp"):
+        assert theory.stress_constant(n, basis=basis) == pytest.approx(mean, abs=1e-14)
+    for basis in ("quadratic", "cubic"):
+        assert theory.stress_constant(n, 0.13, basis) == pytest.approx(0.0, abs=1e-14)
+    kh = 1e-3
+    gradient = theory.cell_symbols(kh, n, 0.1, "linear")[1]
+    error = np.sqrt(np.mean(np.abs(gradient / (1j * kh) - 1.0) ** 2)) / kh
+    assert theory.stress_constant(n, 0.1) == pytest.approx(error, rel=1e-5)
+
+
+@pytest.mark.parametrize("basis", theory.BASES)
+def test_energy_loss_of_the_bases(basis: str) -> None:
+    """|lambda|^2 over the steps of a period, up to the next term in kh."""
+    kh, cfl = 0.05, 0.2
+    size = float(np.max(np.abs(theory.amplification(kh, 2, cfl, basis))))
+    loss = 1.0 - size ** (4.0 * math.pi / (cfl * kh))
+    assert loss == pytest.approx(theory.energy_loss_per_period(kh, 2, cfl, basis), rel=kh)
