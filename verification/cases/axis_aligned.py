@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from _axis_aligned import (
+    PLAIN,
     WAVE_NUMBER,
     compare_bar,
     is_linear,
     judge_modes,
     make_scene,
     solution,
+    starts_early,
     steps_of,
 )
 from _manufactured import (
@@ -66,8 +68,8 @@ def scene(p: Parameters) -> Scene:
 
 def measure(p: Parameters, out: Output) -> Measures:
     """Measure the errors over all frames."""
-    measures = measure_solution(solution(p), out, staggered=p.number("staggered", 0) > 0)
-    if p.sim_type == 1 and p.cells <= FOLLOWED:
+    measures = measure_solution(solution(p), out, staggered=starts_early(p) > 0)
+    if p.sim_type == 1 and p.cells <= FOLLOWED and p.scheme == PLAIN:
         measures["own_program"] = compare_bar(p, out)
     return measures
 
@@ -106,6 +108,14 @@ def judge(r: Results) -> list[Finding]:
 def judge_small(r: Results) -> list[Finding]:
     """Judge orders: 2; stresses 1, by gradients of cells away from their middles."""
     reason = "lumped masses: dispersion of order 2 with every basis"
+    scheme = r.first.scheme
+    if scheme.transfer == "PIC" or scheme.flip < 1.0:
+        # The strongest term for n = 2 and C = 0.2 up to kh = 1: damping a C^-1 pi kh.
+        reason = "damping (1 - mu)/(2 dt) at dt = C h/c: order 1"
+        return fitted(r, "u_l2", 0.75, 1.1, reason, first=32)
+    if scheme.solver == "USF" and not scheme.staggered:
+        reason = "stress updated first: displacements lead by a step, dt = C h/c: order 1"
+        return fitted(r, "u_l2", 0.85, 1.3, reason, first=32)
     last = 128 if r.first.number("amplitude", 1e-6) > 1e-6 else 10**9
     found = fitted(r, "u_l2", 1.9, 2.05, reason, first=8, last=last)
     if r.first.ppc == 1:

@@ -160,7 +160,7 @@ def judge(r: Results) -> list[Finding]:
         findings.append(below(f"loss of angular momentum{end}", m["loss"], bound, law))
         if p.number("tip", 0.1) < 0.05:
             # Elastic expansion: rho w^2 R^2/M = tip^2 = 4e-4 against a growth of some 5e-3.
-            if p.text("rate", "") == "hughes_winget":
+            if p.scheme.rate == "hughes_winget":
                 size = below(
                     f"growth of the logarithm of the inertia{end}",
                     abs(m["size"]),
@@ -182,7 +182,7 @@ def judge(r: Results) -> list[Finding]:
                 p.number("tip", 0.1) ** 2,
                 "det F without elastic strain is 1; elastic: rho w^2 R^2/M",
             )
-            if p.text("rate", "") == "hughes_winget":
+            if p.scheme.rate == "hughes_winget":
                 carried = Finding(carried.name, carried.value)
             findings.append(carried)
             findings.append(

@@ -9,12 +9,13 @@ from _axis_aligned import (
     judge_modes,
     make_scene,
     solution,
+    starts_early,
     steps_of,
 )
 from _manufactured import fitted, judge_start, measure_solution
 from harness.case import Case, Finding, Measures, Output, Parameters, Results
 from harness.scene import Scene
-from harness.theory import frequency_ratio
+from harness.steps import ModeSteps
 
 FRAMES = 20
 
@@ -34,10 +35,11 @@ def scene(p: Parameters) -> Scene:
 def measure(p: Parameters, out: Output) -> Measures:
     """Measure errors, and the lead of the first mode over a cosine."""
     exact = solution(p)
-    measures = measure_solution(exact, out, staggered=p.number("staggered", 0) > 0)
+    measures = measure_solution(exact, out, staggered=starts_early(p) > 0)
     cells = resolution(p)[0]
     courant = exact.wave_speed * out.scene.dt * cells / LENGTH
-    omega = exact.omega * frequency_ratio(np.pi / cells, p.ppc, courant)
+    steps = ModeSteps.of(p.scheme, np.pi / cells, p.ppc, basis=p.mapping)
+    omega = float(np.angle(steps.eigenvalue(courant))) / out.scene.dt
     points = out.scene.bodies[0].points
     shape = np.sin(WAVE_NUMBER * points.x[:, 0])
     times, modes = [], []
@@ -52,7 +54,7 @@ def measure(p: Parameters, out: Output) -> Measures:
 
 def judge(r: Results) -> list[Finding]:
     """Judge the errors of the linear steps; the lead is half a step, or of second order."""
-    staggered = r.first.number("staggered", 0) > 0
+    staggered = starts_early(r.first) > 0 or r.first.scheme.staggered
     found = judge_start(r, WAVE_NUMBER * r.first.number("amplitude", 1e-6))
     for p, m in r:
         found += judge_modes(p, m, *resolution(p), FRAMES)

@@ -51,7 +51,8 @@ class Program:
 
 def sources_digest(case: str) -> str:
     """Return a digest of the files that decide what a run is and how it is measured."""
-    paths = [HARNESS / f"{name}.py" for name in ("scene", "scheme", "frames", "norms", "theory")]
+    names = ("scene", "scheme", "steps", "frames", "norms", "theory")
+    paths = [HARNESS / f"{name}.py" for name in names]
     waiting, known = [CASES / f"{case}.py"], set()
     while waiting:
         path = waiting.pop()
