@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from mpm_pygen.errors import PointsFileError, PygenError
-from mpm_pygen.shapes import BoolArray, FloatArray
+from mpm_pygen.shape import BoolArray, FloatArray
 from mpm_pygen.simulation_type import SimulationType
 
 
