@@ -62,3 +62,28 @@ def test_points_of_mpm_pygen(mpm3d: Run, root: Path, tmp_path: Path, name: str) 
         velocity[: len(values)] = list(map(float, values))
         assert np.array_equal(first.fields["velocity"], np.tile(velocity, (count, 1)))
     assert np.all(last.fields["active"] == 1.0)
+
+
+def test_scenes_of_mpm_pygen_are_accepted(executable: Path, root: Path, tmp_path: Path) -> None:
+    """Every scene of the config builder passes --check, as in configs/ and with other cells."""
+    script = """
+from mpm_pygen.scenes import SCENES
+for make in SCENES.values():
+    assert "BELOW dt" not in make().check()
+    assert "BELOW dt" not in make(cells=60, per_cell=1).check()
+print(len(SCENES))
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        cwd=tmp_path,
+        env={
+            **os.environ,
+            "MPM3D": str(executable),
+            "PYTHONPATH": str(root / "mpm_pygen" / "src"),
+            "PYTHONDONTWRITEBYTECODE": "1",
+        },
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert int(done.stdout) >= 8

@@ -9,6 +9,8 @@ Examples
 8
 """
 
+from mpm_pygen.config import Body, Config, Job, Object, Parts, check_config, find_program
+from mpm_pygen.config_reader import read_config, read_parts
 from mpm_pygen.errors import PointsFileError, PygenError
 from mpm_pygen.filling import fill, mixture
 from mpm_pygen.lattice import lattice
@@ -24,13 +26,18 @@ from mpm_pygen.solids import Extrusion, Revolution, column, rotated_block, wheel
 
 __all__ = [
     "Block",
+    "Body",
     "Circle",
+    "Config",
     "Cylinder",
     "Difference",
     "Extrusion",
     "HalfCircle",
     "Intersection",
+    "Job",
     "Mesh",
+    "Object",
+    "Parts",
     "Pipe",
     "Points",
     "PointsFileError",
@@ -44,13 +51,17 @@ __all__ = [
     "Sphere",
     "Transformed",
     "Union",
+    "check_config",
     "column",
     "fill",
+    "find_program",
     "lattice",
     "mixture",
     "naca",
+    "read_config",
     "read_image",
     "read_mesh",
+    "read_parts",
     "read_points",
     "read_shape",
     "rotated_block",
