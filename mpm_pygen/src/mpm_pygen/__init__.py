@@ -9,10 +9,13 @@ Examples
 8
 """
 
+from mpm_pygen.clouds import Cloud
 from mpm_pygen.config import Body, Config, Job, Object, Parts, check_config, find_program
 from mpm_pygen.config_reader import read_config, read_parts
 from mpm_pygen.errors import PointsFileError, PygenError
 from mpm_pygen.filling import fill, mixture
+from mpm_pygen.frames import Frame, Frames
+from mpm_pygen.history import History, make_history, read_history
 from mpm_pygen.lattice import lattice
 from mpm_pygen.mesh import Mesh, read_mesh
 from mpm_pygen.points import Points, read_points, write_points
@@ -28,11 +31,15 @@ __all__ = [
     "Block",
     "Body",
     "Circle",
+    "Cloud",
     "Config",
     "Cylinder",
     "Difference",
     "Extrusion",
+    "Frame",
+    "Frames",
     "HalfCircle",
+    "History",
     "Intersection",
     "Job",
     "Mesh",
@@ -56,9 +63,11 @@ __all__ = [
     "fill",
     "find_program",
     "lattice",
+    "make_history",
     "mixture",
     "naca",
     "read_config",
+    "read_history",
     "read_image",
     "read_mesh",
     "read_parts",

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from mpm_pygen import cli_points, cli_scene
+from mpm_pygen import cli_points, cli_results, cli_scene
 from mpm_pygen.errors import PygenError
 
 #: Exit statuses, those of mpm3d.
@@ -64,6 +64,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     cli_points.add_commands(commands)
     cli_scene.add_commands(commands)
+    cli_results.add_commands(commands)
     return parser
 
 

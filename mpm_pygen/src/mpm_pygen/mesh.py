@@ -10,12 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mpm_pygen.errors import PygenError
-from mpm_pygen.shape import BoolArray, FloatArray, Shape
-
-IntArray = NDArray[np.int_]
+from mpm_pygen.shape import BoolArray, FloatArray, IntArray, Shape
 
 #: Rays are compared with the triangles in blocks of about this many pairs.
 PAIRS = 2_000_000

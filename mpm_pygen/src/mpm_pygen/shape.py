@@ -14,6 +14,7 @@ from mpm_pygen.errors import PygenError
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int_]
 
 
 class Shape(ABC):
