@@ -81,8 +81,8 @@ def test_squares_have_their_places_areas_and_colours(tmp_path: Path) -> None:
 def test_limits_are_those_of_the_frames(tmp_path: Path) -> None:
     """Without limits the lowest and highest speeds get the ends of the colours."""
     seen = _Seen(Painter(_two_squares(tmp_path), Style(), [0]))
-    assert np.abs(seen.at(0.25, 0.25) - _colour(0.0)).max() <= 1.0
-    assert np.abs(seen.at(0.25, 0.75) - _colour(1.0)).max() <= 1.0
+    assert np.abs(seen.at(0.28, 0.28) - _colour(0.0)).max() <= 1.0
+    assert np.abs(seen.at(0.2, 0.7) - _colour(1.0)).max() <= 1.0
     bar = seen.axes[-1]
     assert bar.get_ylabel() == "speed (m/s)"
     assert bar.get_ylim() == (1.0, 3.0)

@@ -96,6 +96,8 @@ class Painter:
         self.sides = {body: _sides(frames, body) for body in self.bodies}
         self.limits = style.limits or self._limits()
         self.box = self._box()
+        #: Lowest and highest value that was drawn.
+        self.drawn = (math.inf, -math.inf)
         self.deformations = {} if self.solid or self.sim_type == 1 else self._deformations()
 
     @property
@@ -107,24 +109,28 @@ class Painter:
         """Draw the frames side by side, with one colour bar."""
         from matplotlib.figure import Figure
 
-        dpi, count = 100.0, len(self.numbers)
+        count = len(self.numbers)
         width, height = self._size()
-        bar = 0.0 if self.sim_type == 1 else 0.95
-        figure = Figure(figsize=(count * width + bar, height), dpi=dpi)
+        room = 0.0 if self.sim_type == 1 else 0.95
+        figure = Figure(figsize=(count * width + room, height), dpi=100.0)
         figure.set_layout_engine("constrained", h_pad=0.08, w_pad=0.06)
         panels = figure.subplots(1, count, squeeze=False)[0]
         drawn: ScalarMappable | None = None
         for panel, number in zip(panels, self.numbers, strict=True):
             drawn = self.draw(panel, self.frames[number])
         if drawn is not None:
-            figure.colorbar(
+            low, high = self.drawn
+            ends = {(True, True): "both", (True, False): "min", (False, True): "max"}
+            bar = figure.colorbar(
                 drawn,
                 ax=list(panels),
-                label=label(self.style.shown),
                 pad=0.02,
                 shrink=0.85,
                 aspect=25,
+                extend=ends.get((low < self.limits[0], high > self.limits[1]), "neither"),
             )
+            bar.set_label(label(self.style.shown), size=9)
+            bar.ax.tick_params(labelsize=8)
         return figure
 
     def draw(self, axes: Axes, frame: Frame) -> ScalarMappable | None:
@@ -198,7 +204,9 @@ class Painter:
             for sign in signs:
                 squares: Any = outlines * [sign, 1.0]
                 axes.add_collection(
-                    PolyCollection(squares, facecolors=paint, edgecolors=paint, linewidths=0.8)
+                    PolyCollection(
+                        squares, facecolors=paint, edgecolors=paint, linewidths=0.8, snap=False
+                    )
                 )
         if self.style.mirror:
             axes.axvline(0.0, color="0.4", linewidth=0.6, dashes=(6, 3, 1, 3))
@@ -246,7 +254,9 @@ class Painter:
             shown = paint[box].copy()
             shown[:, :3] *= (0.55 + 0.45 * light)[:, None]
             axes.add_collection(
-                PolyCollection(faces, facecolors=shown, edgecolors=shown, linewidths=0.8)
+                PolyCollection(
+                    faces, facecolors=shown, edgecolors=shown, linewidths=0.8, snap=False
+                )
             )
         left, right, low, high = self.box
         axes.set(xlim=(left, right), ylim=(low, high), xticks=[], yticks=[])
@@ -301,6 +311,7 @@ class Painter:
                 color="0.3",
                 ha="center",
                 va="center",
+                clip_on=True,
             )
 
     def _paint(self, cloud: Cloud, colours: ScalarMappable) -> FloatArray:
@@ -308,6 +319,10 @@ class Painter:
         values = _values(cloud, self.style.shown)
         if values is None:
             return np.tile(np.array(GREY), (len(cloud), 1))
+        if np.any(cloud.active):
+            seen = values[cloud.active]
+            low, high = self.drawn
+            self.drawn = min(low, float(seen.min())), max(high, float(seen.max()))
         return np.asarray(colours.to_rgba(values), dtype=np.float64)
 
     def _side(self, cloud: Cloud, body: str) -> FloatArray:

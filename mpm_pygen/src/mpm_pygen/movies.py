@@ -124,7 +124,9 @@ def save_png(pixels: Pixels, path: str | os.PathLike[str], few_colours: int = 0)
     if few_colours:
         if not 2 <= few_colours <= 256:
             raise PygenError(f"few colours are 2 to 256, not {few_colours}")
-        image = image.quantize(few_colours, dither=Image.Dither.NONE)
+        image = image.quantize(
+            few_colours, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
+        )
     image.save(path, format="PNG", optimize=True)
 
 
@@ -141,11 +143,17 @@ def find_ffmpeg() -> str | None:
 
 
 def _pictures(frames: Frames, numbers: Sequence[int], style: Style) -> Iterator[Pixels]:
-    """Draw frame after frame, all with the colours of the first one's limits."""
+    """Draw frame after frame in one layout, with the limits of all."""
     painter = Painter(frames, style, numbers)
-    for number in numbers:
-        painter.numbers = [number]
-        yield render(painter.figure())
+    painter.numbers = [numbers[0]]
+    figure = painter.figure()
+    yield render(figure)
+    # The layout of the first frame stays: to find one takes longer than to draw.
+    figure.set_layout_engine("none")
+    for number in numbers[1:]:
+        figure.axes[0].clear()
+        painter.draw(figure.axes[0], frames[number])
+        yield render(figure)
 
 
 def _save_gif(pictures: Iterator[Pixels], path: Path, rate: float) -> None:
