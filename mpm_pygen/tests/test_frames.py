@@ -183,7 +183,7 @@ def _write_hdf(path: Path, steps: list[dict[str, Array]]) -> None:
 def test_vtk_hdf_reads_as_vtk_reads_it(tmp_path: Path) -> None:
     """Steps of different sizes, mixed with legacy files of another body."""
     steps = [_random_body(3, 1), _random_body(5, 2), _random_body(4, 3)]
-    path = tmp_path / "fpd.0.a.vtkhdf"
+    path = tmp_path / "points.0.a.vtkhdf"
     _write_hdf(path, steps)
     reader = vtkHDFReader()
     reader.SetFileName(str(path))
@@ -204,6 +204,21 @@ def test_vtk_hdf_reads_as_vtk_reads_it(tmp_path: Path) -> None:
             assert seen.ravel().tolist() == cloud[name].ravel().tolist()
     with pytest.raises(PygenError, match="3 steps"):
         HdfSeries(path).read(3)
+
+
+def test_vtk_hdf_tells_type_and_config(tmp_path: Path) -> None:
+    """The group of mpm3d has both: no config to be named."""
+    path = tmp_path / "points.0.a.vtkhdf"
+    _write_hdf(path, [_random_body(3, 1)])
+    assert Frames(tmp_path).config is None
+    scene = _config(4, a=Body("a", material=Object("IsotropicLinearElasticity", (1e5, 0.3))))
+    with h5py.File(path, "a") as file:
+        group = file.create_group("mpm3d")
+        group.attrs["type"] = 4
+        group["config"] = np.bytes_(scene.text().encode())
+    frames = Frames(tmp_path)
+    assert frames.sim_type == 4
+    assert frames.config == scene
     path.write_text("no")
     with pytest.raises(PygenError, match="no HDF5"):
         Frames(tmp_path)

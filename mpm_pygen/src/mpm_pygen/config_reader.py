@@ -46,7 +46,20 @@ def read_config(path: str | os.PathLike[str]) -> Config:
         The file. Only its form is checked; `mpm3d --check` checks the content.
     """
     path = Path(path)
-    _, sections = _parse(path)
+    return parse_config(path.read_text("utf-8"), str(path))
+
+
+def parse_config(text: str, path: str = "config") -> Config:
+    """Make a config of its text.
+
+    Parameters
+    ----------
+    text : str
+        What a file holds.
+    path : str
+        Name of the file, for messages.
+    """
+    _, sections = _parse(path, text)
     one: dict[str, _Section] = {}
     bodies, contacts = [], []
     for section in sections:
@@ -84,8 +97,7 @@ def read_parts(path: str | os.PathLike[str]) -> Parts:
     path : str or PathLike
         The file.
     """
-    path = Path(path)
-    entries, sections = _parse(path)
+    entries, sections = _parse(str(path), Path(path).read_text("utf-8"))
     for key in ("Lx", "Nx", "lmpp", "rho"):
         if key not in entries:
             raise PygenError(f"{path}: there is no {key}")
@@ -143,9 +155,9 @@ def _single(entries: dict[str, list[tuple[str, Value]]], key: str, default: Valu
     return items[0][1] if items else default
 
 
-def _parse(path: Path) -> tuple[dict[str, list[tuple[str, Value]]], list[_Section]]:
+def _parse(path: str, text: str) -> tuple[dict[str, list[tuple[str, Value]]], list[_Section]]:
     """Read the entries outside of sections, and the sections."""
-    tokens = _tokens(path)
+    tokens = _tokens(path, text)
     outside: dict[str, list[tuple[str, Value]]] = {}
     sections: list[_Section] = []
     current: dict[str, list[tuple[str, Value]]] = outside
@@ -171,7 +183,7 @@ def _parse(path: Path) -> tuple[dict[str, list[tuple[str, Value]]], list[_Sectio
     return outside, sections
 
 
-def _items(path: Path, tokens: list[_Token], k: int) -> tuple[list[tuple[str, Value]], int]:
+def _items(path: str, tokens: list[_Token], k: int) -> tuple[list[tuple[str, Value]], int]:
     """Read the values of an entry from token k on; also tell where the next entry starts."""
     items: list[tuple[str, Value]] = []
 
@@ -212,9 +224,8 @@ def _value(token: _Token) -> Value:
     return token.text
 
 
-def _tokens(path: Path) -> list[_Token]:
+def _tokens(path: str, text: str) -> list[_Token]:
     """Split the text."""
-    text = path.read_text("utf-8")
     tokens, position, line = [], 0, 1
     while position < len(text):
         match = _TOKEN.match(text, position)

@@ -14,7 +14,7 @@ import numpy as np
 
 from mpm_pygen.clouds import Cloud
 from mpm_pygen.config import Config
-from mpm_pygen.config_reader import read_config
+from mpm_pygen.config_reader import parse_config, read_config
 from mpm_pygen.errors import PygenError
 from mpm_pygen.shape import FloatArray
 from mpm_pygen.vtk_hdf import HdfSeries
@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from mpm_pygen.history import History
 
 _NAME = re.compile(r"(fpd|fnd)\.(\d+)\.(.+)\.(\d{10})\.vtk")
-_HDF_NAME = re.compile(r"(fpd|fnd)\.(\d+)\.(.+)\.(?:vtkhdf|hdf)")
+_HDF_NAME = re.compile(r"(points|nodes)\.(\d+)\.(.+)\.vtkhdf")
+_KINDS = {"points": "fpd", "nodes": "fnd"}
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,7 @@ class Frames:
         The folder of the frames.
     config : str, PathLike or Config, optional
         Config of the run. It tells the TYPE, elastic constants, and with its points file the
-        masses, where the frames do not.
+        masses, where the frames do not. VTKHDF files hold it themselves.
     sim_type : int, optional
         TYPE of the run, 1 to 5, when there is no config to tell it.
 
@@ -120,13 +121,19 @@ class Frames:
                     numbers.add(int(match[4]))
             elif match := _HDF_NAME.fullmatch(path.name):
                 self._ids[match[3]] = int(match[2])
-                series = self._hdf[match[1], match[3]] = HdfSeries(path)
-                if match[1] == "fpd":
+                series = self._hdf[_KINDS[match[1]], match[3]] = HdfSeries(path)
+                if match[1] == "points":
                     numbers.update(range(len(series)))
         if not numbers:
             raise PygenError(
-                f"{self.folder} has no frames (fpd.<number>.<body>.<frame>.vtk or .vtkhdf)"
+                f"{self.folder} has no frames (fpd.<number>.<body>.<frame>.vtk, or "
+                "points.<number>.<body>.vtkhdf)"
             )
+        told = next(iter(self._hdf.values()), None)
+        if told is not None:
+            self._sim_type = self._sim_type or told.sim_type
+            if self.config is None and told.config:
+                self.config = parse_config(told.config, str(told.path))
         self.bodies = sorted(self._ids, key=self._ids.__getitem__)
         self.numbers = sorted(numbers)
         self.times = np.array([self._time(number) for number in self.numbers])

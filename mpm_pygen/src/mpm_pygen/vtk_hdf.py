@@ -23,6 +23,10 @@ class HdfSeries:
     ----------
     times : FloatArray
         `(steps,)` [s]
+    sim_type : int or None
+        TYPE of the run, where the file tells.
+    config : str
+        Text of the config of the run, empty when the file does not tell.
     """
 
     def __init__(self, path: Path) -> None:
@@ -35,6 +39,11 @@ class HdfSeries:
             kind = kind.decode() if isinstance(kind, bytes) else str(kind)
             if kind not in ("PolyData", "UnstructuredGrid"):
                 raise PygenError(f"{path}: a file of type {kind or 'unknown'} has no points")
+            own = file.get("mpm3d")
+            told = None if own is None else own.attrs.get("type")
+            self.sim_type = None if told is None else int(told)
+            text = None if own is None else own.get("config")
+            self.config = "" if text is None else bytes(text[()]).decode("utf-8", "replace")
             self.times = np.array(root["Steps/Values"] if "Steps" in root else [0.0], dtype=float)
 
     def __len__(self) -> int:
