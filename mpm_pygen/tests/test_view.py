@@ -146,6 +146,15 @@ def test_deformation_of_neighbours() -> None:
     # A row has neighbours in one direction only.
     row = np.column_stack([0.1 * np.arange(5), np.zeros(5)])
     assert not Deformation(row, np.full(5, 0.1)).gradients(row)[1].any()
+    # Neighbours of random points: those that all distances tell.
+    some = np.random.default_rng(2).uniform(-1.0, 1.0, (300, 2))
+    found = Deformation(some, np.full(300, 0.1))
+    gap = np.sqrt(((some[:, None] - some[None]) ** 2).sum(axis=2))
+    near = {(i, j) for i, j in np.argwhere(gap <= 0.16).tolist() if i != j}
+    assert {*zip(found.first.tolist(), found.second.tolist(), strict=True)} == near
+    assert len(found.first) == len(near)
+    burst = np.array([[0.0, 0.0], [1e300, 0.0], [0.1, 0.1]])
+    assert surface_points(burst, np.full(3, 0.1)).all()
     outside = surface_points(x, np.full(25, 0.1)).reshape(5, 5)
     assert not outside[1:-1, 1:-1].any()
     assert outside.sum() == 16

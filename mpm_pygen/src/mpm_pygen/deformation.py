@@ -8,8 +8,8 @@ from mpm_pygen.shape import BoolArray, FloatArray, IntArray
 
 #: Neighbours are those of a square lattice, diagonals included, up to this many spacings away.
 REACH = 1.6
-#: Bodies of more points are drawn without a deformation: distances of all pairs are needed.
-MOST_POINTS = 6000
+#: Bodies of more points are drawn without a deformation, which would not be seen.
+MOST_POINTS = 200_000
 #: A fit that misses the neighbours by more than this part of their distance says nothing.
 WORST_FIT = 0.25
 
@@ -89,13 +89,26 @@ def surface_points(position: FloatArray, side: FloatArray) -> BoolArray:
 
 def _pairs(position: FloatArray, reach: float) -> tuple[IntArray, IntArray]:
     """Give all ordered pairs of points that are no further apart than `reach`."""
-    first, second = [], []
-    for start in range(0, len(position), 500):
-        block = position[start : start + 500]
-        square = np.sum((block[:, None, :] - position[None, :, :]) ** 2, axis=2)
-        near = square <= reach**2
-        rows, columns = np.nonzero(near)
-        kept = rows + start != columns
-        first.append(rows[kept] + start)
-        second.append(columns[kept])
+    nobody = np.empty(0, dtype=int)
+    place = (position - position.min(axis=0)) / reach
+    if not np.all(place < 1e9):
+        # A body that has burst has no neighbours.
+        return nobody, nobody
+    # Points by cells as wide as the reach, so that neighbours are in the next cells at most.
+    cells = place.astype(int) + 1
+    stride = int(cells[:, 1].max()) + 2
+    key = cells[:, 0] * stride + cells[:, 1]
+    order = np.argsort(key, kind="stable")
+    keys = key[order]
+    first, second = [nobody], [nobody]
+    for step in (a * stride + b for a in (-1, 0, 1) for b in (-1, 0, 1)):
+        start = np.searchsorted(keys, key + step, "left")
+        count = np.searchsorted(keys, key + step, "right") - start
+        one = np.repeat(np.arange(len(key)), count)
+        within = np.arange(len(one)) - np.repeat(np.cumsum(count) - count, count)
+        other = order[np.repeat(start, count) + within]
+        near = np.sum((position[one] - position[other]) ** 2, axis=1) <= reach**2
+        kept = near & (one != other)
+        first.append(one[kept])
+        second.append(other[kept])
     return np.concatenate(first), np.concatenate(second)

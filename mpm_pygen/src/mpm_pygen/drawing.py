@@ -93,7 +93,7 @@ class Painter:
                 "mirroring and revolving are for TYPE 4 (name the config, or the type)"
             )
         self.lines = frames.grid_lines()
-        self.sides = {body: _sides(frames, body) for body in self.bodies}
+        self.sides = {body: self._first_side(body) for body in self.bodies}
         self.limits = style.limits or self._limits()
         self.box = self._box()
         #: Lowest and highest value that was drawn.
@@ -334,6 +334,13 @@ class Painter:
             volume = volume / cloud.position[:, 0]
         return np.asarray(np.maximum(volume, 0.0) ** (1.0 / (3 if self.sim_type == 3 else 2)))
 
+    def _first_side(self, body: str) -> float:
+        """Give a typical side of the points in the first frame."""
+        cloud = self.frames[0].points(body)
+        if "volume" in cloud.fields:
+            return float(np.median(self._side(cloud, body)))
+        return _sides(self.frames, body)
+
     def _outlines(self, cloud: Cloud, body: str) -> FloatArray:
         """Give the corners of the points, `(n, 4, 2)`: deformed squares, as neighbours went."""
         side = self._side(cloud, body)
@@ -442,6 +449,7 @@ def _sides(frames: Frames, body: str) -> float:
     x = frames[0].points(body).position
     if len(x) < 2:
         return 0.0
+    # A few points tell it.
     some = x[:: max(1, len(x) // 200)]
     distances = []
     for point in some:
