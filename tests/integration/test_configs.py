@@ -91,3 +91,18 @@ def time_of(report: str, name: str) -> float:
     match = re.search(rf"\b{name} = (\S+)", report)
     assert match, report
     return float(match[1])
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_scene_has_its_picture(scene: str) -> None:
+    """The README shows it with the command that makes it, and so does the page of all scenes."""
+    folder = (CONFIGS.parent / scene).parent
+    readme = (folder / "README.md").read_text("utf-8")
+    name = Path(scene).stem
+    picture = CONFIGS.parent / "docs" / "images" / f"{name}.png"
+    assert f"](../../docs/images/{name}.png)" in readme
+    assert re.search(rf"^    mpm-pygen view output/{name} .+$", readme, re.M)
+    assert f"](images/{name}.png)" in (CONFIGS.parent / "docs" / "scenes.md").read_text("utf-8")
+    data = picture.read_bytes()
+    assert data.startswith(b"\x89PNG")
+    assert len(data) < 100_000

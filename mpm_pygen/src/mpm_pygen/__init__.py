@@ -1,4 +1,4 @@
-"""Points files for mpm3d: simple shapes filled with material points on a lattice.
+"""Points files, configs and results of mpm3d.
 
 Examples
 --------
@@ -9,25 +9,73 @@ Examples
 8
 """
 
+from mpm_pygen.clouds import Cloud
+from mpm_pygen.config import Body, Config, Job, Object, Parts, check_config, find_program
+from mpm_pygen.config_reader import read_config, read_parts
 from mpm_pygen.errors import PointsFileError, PygenError
-from mpm_pygen.lattice import fill, lattice
+from mpm_pygen.filling import fill, mixture
+from mpm_pygen.frames import Frame, Frames
+from mpm_pygen.history import History, make_history, read_history
+from mpm_pygen.lattice import lattice
+from mpm_pygen.mesh import Mesh, read_mesh
 from mpm_pygen.points import Points, read_points, write_points
-from mpm_pygen.shapes import Block, Circle, Cylinder, HalfCircle, Shape, Sphere
+from mpm_pygen.polygons import Polygon, naca, slope, wedge
+from mpm_pygen.raster import Raster, read_image
+from mpm_pygen.shape import Difference, Intersection, Shape, Transformed, Union
+from mpm_pygen.shape_text import read_shape
+from mpm_pygen.shapes import Block, Circle, Cylinder, HalfCircle, Pipe, Ring, Sphere
 from mpm_pygen.simulation_type import SimulationType
+from mpm_pygen.solids import Extrusion, Revolution, column, rotated_block, wheel
 
 __all__ = [
     "Block",
+    "Body",
     "Circle",
+    "Cloud",
+    "Config",
     "Cylinder",
+    "Difference",
+    "Extrusion",
+    "Frame",
+    "Frames",
     "HalfCircle",
+    "History",
+    "Intersection",
+    "Job",
+    "Mesh",
+    "Object",
+    "Parts",
+    "Pipe",
     "Points",
     "PointsFileError",
+    "Polygon",
     "PygenError",
+    "Raster",
+    "Revolution",
+    "Ring",
     "Shape",
     "SimulationType",
     "Sphere",
+    "Transformed",
+    "Union",
+    "check_config",
+    "column",
     "fill",
+    "find_program",
     "lattice",
+    "make_history",
+    "mixture",
+    "naca",
+    "read_config",
+    "read_history",
+    "read_image",
+    "read_mesh",
+    "read_parts",
     "read_points",
+    "read_shape",
+    "rotated_block",
+    "slope",
+    "wedge",
+    "wheel",
     "write_points",
 ]

@@ -9,9 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mpm_pygen.errors import PygenError
-from mpm_pygen.points import Points
-from mpm_pygen.shapes import FloatArray, Shape
-from mpm_pygen.simulation_type import SimulationType
+from mpm_pygen.shape import FloatArray, Shape
 
 #: A side fits when it holds a whole number of cells to this part of a cell, so that 0.3333333
 #: fits a side of 1. The spacing in use is then the side divided by that number.
@@ -22,67 +20,12 @@ FIT = 1e-6
 MOST_CELLS = 10**8
 
 
-def fill(
+def lattice(
     shape: Shape,
-    sim_type: SimulationType,
-    *,
     spacing: float | Sequence[float],
-    density: float,
-    velocity: Sequence[float] | None = None,
-) -> Points:
-    """Fill a shape with points of one size, density and velocity.
-
-    Parameters
-    ----------
-    shape : Shape
-        In as many dimensions as the grid of the simulation has. In TYPE 4 it is the meridian
-        section, in the coordinates r and z, with r >= 0.
-    sim_type : SimulationType
-        Kind of simulation.
-    spacing : float or Sequence[float]
-        Distance of neighbours, one for all directions or one for each. [m]
-    density : float
-        Above 0. [kg/m^3]
-    velocity : Sequence[float], optional
-        One number for each component; at rest when left out. [m/s]
-
-    Returns
-    -------
-    Points
-        Ordered with the last direction fastest, all active.
-    """
-    if shape.dimension != sim_type.dimension:
-        raise PygenError(
-            f"TYPE {int(sim_type)} has {sim_type.dimension} grid directions, "
-            f"the shape {shape.dimension}"
-        )
-    if not (math.isfinite(density) and density > 0.0):
-        raise PygenError(f"the density is a number above 0, not {density!r}")
-    if sim_type is SimulationType.AXISYMMETRIC and shape.bounds[0][0] < 0.0:
-        raise PygenError(
-            f"the shape reaches r = {float(shape.bounds[0][0])!r}, but r >= 0 in TYPE 4"
-        )
-    if velocity is None:
-        velocity = [0.0] * sim_type.components
-    if len(velocity) != sim_type.components:
-        names = ", ".join(sim_type.coordinates)
-        raise PygenError(
-            f"a velocity of TYPE {int(sim_type)} has {sim_type.components} components "
-            f"({names}), not {len(velocity)}"
-        )
-    position, cell = lattice(shape, spacing)
-    n = len(position)
-    return Points(
-        sim_type=sim_type,
-        mass=np.full(n, density * cell),
-        volume=np.full(n, cell),
-        position=position,
-        velocity=np.tile(np.array(velocity, dtype=float), (n, 1)),
-        active=np.ones(n, dtype=bool),
-    )
-
-
-def lattice(shape: Shape, spacing: float | Sequence[float]) -> tuple[FloatArray, float]:
+    *,
+    origin: Sequence[float] | None = None,
+) -> tuple[FloatArray, float]:
     """Give the centres of the cells of a lattice that lie in a shape.
 
     Parameters
@@ -91,6 +34,9 @@ def lattice(shape: Shape, spacing: float | Sequence[float]) -> tuple[FloatArray,
         What to fill.
     spacing : float or Sequence[float]
         Sides of a cell.
+    origin : Sequence[float], optional
+        A position at which cells meet, in place of that of the shape. No side of the shape has to
+        be a multiple of the spacing then.
 
     Returns
     -------
@@ -99,25 +45,28 @@ def lattice(shape: Shape, spacing: float | Sequence[float]) -> tuple[FloatArray,
     cell : float
         Length, area or volume of a cell.
     """
-    sides = _spacings(spacing, shape.dimension)
+    sides = spacings(spacing, shape.dimension)
     lower, upper = shape.bounds
-    origin = shape.origin
+    flat = shape.flat_directions if origin is None else ()
+    start = shape.origin if origin is None else np.array(origin, dtype=float)
+    if start.shape != (shape.dimension,) or not np.all(np.isfinite(start)):
+        raise PygenError(f"the origin of a lattice has {shape.dimension} numbers here")
     starts, ends = [], []
     for k in range(shape.dimension):
         low, high = float(lower[k]), float(upper[k])
-        if k in shape.flat_directions:
+        if k in flat:
             sides[k] = _fitted(k, low, high, sides[k])
-            starts.append(round((low - origin[k]) / sides[k]))
-            ends.append(round((high - origin[k]) / sides[k]))
+            starts.append(round((low - start[k]) / sides[k]))
+            ends.append(round((high - start[k]) / sides[k]))
         else:
-            starts.append(math.floor((low - origin[k]) / sides[k]))
-            ends.append(math.ceil((high - origin[k]) / sides[k]))
-    cells = math.prod(end - start for start, end in zip(starts, ends, strict=True))
+            starts.append(math.floor((low - start[k]) / sides[k]))
+            ends.append(math.ceil((high - start[k]) / sides[k]))
+    cells = math.prod(last - first for first, last in zip(starts, ends, strict=True))
     if cells > MOST_CELLS:
         raise PygenError(
             f"a spacing of {_text(sides)} asks for {cells} points, more than {MOST_CELLS}"
         )
-    axes = [origin[k] + (np.arange(starts[k], ends[k]) + 0.5) * sides[k] for k in range(len(sides))]
+    axes = [start[k] + (np.arange(starts[k], ends[k]) + 0.5) * sides[k] for k in range(len(sides))]
     position = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
     position = position[shape.contains(position)]
     if len(position) == 0:
@@ -125,8 +74,16 @@ def lattice(shape: Shape, spacing: float | Sequence[float]) -> tuple[FloatArray,
     return position, math.prod(sides)
 
 
-def _spacings(spacing: float | Sequence[float], dimension: int) -> list[float]:
-    """Give one checked spacing for each direction."""
+def spacings(spacing: float | Sequence[float], dimension: int) -> list[float]:
+    """Give one checked spacing for each direction.
+
+    Parameters
+    ----------
+    spacing : float or Sequence[float]
+        One number, or one for each direction.
+    dimension : int
+        Number of directions.
+    """
     values = [spacing] if isinstance(spacing, float | int) else list(spacing)
     if len(values) == 1:
         values = values * dimension

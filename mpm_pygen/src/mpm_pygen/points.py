@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from mpm_pygen.errors import PointsFileError, PygenError
-from mpm_pygen.shapes import BoolArray, FloatArray
+from mpm_pygen.shape import BoolArray, FloatArray
 from mpm_pygen.simulation_type import SimulationType
 
 
@@ -85,15 +85,15 @@ class Points:
     @property
     def total_mass(self) -> float:
         """Mass of the body: per unit area or depth in types 1, 2, 5, per radian in TYPE 4."""
-        return math.fsum((self.mass * self._factor).tolist())
+        return math.fsum((self.mass * self.factor).tolist())
 
     @property
     def total_volume(self) -> float:
         """Volume of the body, in the same sense as `total_mass`."""
-        return math.fsum((self.volume * self._factor).tolist())
+        return math.fsum((self.volume * self.factor).tolist())
 
     @property
-    def _factor(self) -> FloatArray:
+    def factor(self) -> FloatArray:
         """What the program multiplies mass and volume by."""
         if self.sim_type is SimulationType.AXISYMMETRIC:
             return self.position[:, 0]
