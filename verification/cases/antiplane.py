@@ -97,7 +97,11 @@ def judge(r: Results) -> list[Finding]:
             why = "sqrt(1 + (dt c')^2) a step; 5 %: strain times shear, second order in h"
             name = f"growth of the stress, {p.cells} cells"
             found.append(near(name, m["growth"], 1.0, 0.05, why))
-        return found + fitted(r, "u_l2", 0.95, 1.6, reason, first=64)
+        high = 1.6
+        if r.first.mapping in ("quadratic", "cubic"):
+            high = 2.1
+            reason += "; dispersion of order 2, twice that of linear functions and more, beside it"
+        return found + fitted(r, "u_l2", 0.95, high, reason, first=64)
     return found + fitted(r, "u_l2", 0.9, 1.25, reason, first=32)
 
 
