@@ -61,8 +61,9 @@ def scene_with(p: Parameters, dt: float) -> Scene:
 
 
 def has_seams(p: Parameters) -> bool:
-    """Tell whether the grid repeats: for splines, waves of which walls would mix."""
-    return p.sim_type != 4 and (not walls_reflect(p) or p.text("walls", "slip") == "seams")
+    """Tell whether the grid repeats: by default for splines, waves of which walls would mix."""
+    default = "slip" if walls_reflect(p) else "seams"
+    return p.sim_type != 4 and p.text("walls", default) == "seams"
 
 
 def walls(p: Parameters) -> Walls:
@@ -75,8 +76,9 @@ def walls(p: Parameters) -> Walls:
 
 
 def needs_matrices(p: Parameters) -> bool:
-    """Tell whether waves do not split into sines: around an axis, or with shifted points."""
-    return p.sim_type == 4 or (p.number("shift", 0.0) > 0.0 and not has_seams(p))
+    """Tell whether waves do not split: around an axis, of shifted points or splines at walls."""
+    split = p.number("shift", 0.0) == 0.0 and walls_reflect(p)
+    return p.sim_type == 4 or not (split or has_seams(p))
 
 
 def waves(p: Parameters) -> list[ModeSteps]:
