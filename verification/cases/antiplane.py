@@ -97,18 +97,14 @@ def judge(r: Results) -> list[Finding]:
             why = "sqrt(1 + (dt c')^2) a step; 5 %: strain times shear, second order in h"
             name = f"growth of the stress, {p.cells} cells"
             found.append(near(name, m["growth"], 1.0, 0.05, why))
-<<<<<<< HEAD
-        return found + fitted(r, "u_l2", 0.95, 1.6, reason, first=64)
-    if r.first.scheme.rate == "hughes_winget":
-        reason = "stress turned by a rotation of the middle of the step: order 2 in dt, as in h"
-        return found + fitted(r, "u_l2", 1.85, 2.1, reason, first=32)
-=======
         high = 1.6
         if r.first.mapping in ("quadratic", "cubic"):
             high = 2.1
             reason += "; dispersion of order 2, twice that of linear functions and more, beside it"
         return found + fitted(r, "u_l2", 0.95, high, reason, first=64)
->>>>>>> 7c776b8cff85be9a8a6cf8916dde35591e4432a1
+    if r.first.scheme.rate == "hughes_winget":
+        reason = "stress turned by a rotation of the middle of the step: order 2 in dt, as in h"
+        return found + fitted(r, "u_l2", 1.85, 2.1, reason, first=32)
     return found + fitted(r, "u_l2", 0.9, 1.25, reason, first=32)
 
 
