@@ -1,4 +1,4 @@
-"""Quadratures by domains in whole runs: conservation, large rotation, walls, seams, threads, corners."""
+"""Quadratures by domains in whole runs: conservation, rotation, seams, threads, corners."""
 
 from __future__ import annotations
 
