@@ -4,7 +4,7 @@ module mpm_point_exchange
   use mpm_kinematics, only: type_axisymmetric
   use mpm_level_set, only: level_set_t
   use mpm_points, only: points_t
-  use mpm_stencil, only: basis_hat
+  use mpm_stencil, only: basis_hat, outside
   implicit none
   private
   public :: add_reserve, activate, donate, field_means_t, merge_points, retire
@@ -39,7 +39,7 @@ contains
     call lengthen_integers(points%id, n_more)
     points%id(n + 1:) = [(i, i=n + 1, n + n_more)]
     call lengthen_integers(points%key, n_more)
-    points%key(n + 1:) = points%key(n:n)
+    points%key(n + 1:) = outside
     call lengthen_integers(points%order, n_more)
     call lengthen_scalars(points%mass, n_more)
     call lengthen_scalars(points%volume, n_more)

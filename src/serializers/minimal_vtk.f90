@@ -77,7 +77,9 @@ contains
         end do
       end if
       call writer%scalar('gamma_dot', values)
-      values = points%mass/points%volume
+      values = 0.0_wp
+      ! Points in reserve have neither.
+      where (points%volume > 0.0_wp) values = points%mass/points%volume
       call writer%scalar('density', values)
     end associate
   end subroutine minimal_vtk_send_point_fields
