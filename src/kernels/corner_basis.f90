@@ -12,10 +12,13 @@ module mpm_corner_basis
   implicit none
   private
   public :: add_box, add_corners, add_plain, corner_functions, keep_inside, list_nodes, reaches_out
+  public :: value_at_corner
 
   !> Distance in cells by which a corner may lie behind a wall and counts as on it. Steps of finite
   !! length let the corners of points at a wall drift out, by far less than this in a usual run.
   real(wp), parameter :: slack = 1.0e-3_wp
+  !> Most nodes in one direction of a box of nodes: those of eight corners over four by four.
+  integer, parameter :: most = 32
 
 contains
 
@@ -80,11 +83,14 @@ contains
     real(wp), intent(inout), optional :: w(*)
     !> Derivatives. [1/m] (width, dim, n)
     real(wp), intent(inout), optional :: dw(*)
-    real(wp) :: inside(stencil%dim, n), sizes(n), reach, s
-    integer :: key(n), d, p
+    real(wp) :: inside(3*block_size), sizes(block_size), reach, s
+    integer :: key(block_size), d, p
 
-    inside = y
-    sizes = 0.0_wp
+    ! Arrays of constant size need no allocation.
+    do p = 1, n
+      inside((p - 1)*stencil%dim + 1:p*stencil%dim) = y(:, p)
+    end do
+    sizes(:n) = 0.0_wp
     if (any(stencil%periodic)) call wrap_points(stencil, n, inside)
     call stencil_keys(stencil, n, inside, sizes, key)
     call decode_keys(stencil, n, key, first)
@@ -116,19 +122,26 @@ contains
     integer :: i, j, k, e, y, z
 
     e = 0
+    if (.not. any(stencil%periodic)) then
+      z = window%index(first) - 1
+      do k = 0, counts(3) - 1
+        do j = 0, counts(2) - 1
+          y = z + window%n(1)*(j + window%n(2)*k)
+          do i = 1, counts(1)
+            node(e + i) = y + i
+          end do
+          e = e + counts(1)
+        end do
+      end do
+      return
+    end if
     do k = 0, counts(3) - 1
       z = window%n(1)*window%n(2)*(image(3, first(3) + k) - window%lo(3))
       do j = 0, counts(2) - 1
         y = z + window%n(1)*(image(2, first(2) + j) - window%lo(2)) - window%lo(1) + 1
-        if (stencil%periodic(1)) then
-          do i = 0, counts(1) - 1
-            node(e + i + 1) = y + image(1, first(1) + i)
-          end do
-        else
-          do i = 0, counts(1) - 1
-            node(e + i + 1) = y + first(1) + i
-          end do
-        end if
+        do i = 0, counts(1) - 1
+          node(e + i + 1) = y + image(1, first(1) + i)
+        end do
         e = e + counts(1)
       end do
     end do
@@ -183,6 +196,41 @@ contains
     end do
   end subroutine add_plain
 
+  !> Interpolate a nodal field to one position.
+  pure subroutine value_at_corner(width, dim, components, w, node, field, value)
+    !> Nodes per direction.
+    integer, intent(in) :: width
+    !> Dimensions.
+    integer, intent(in) :: dim
+    !> Components of the field.
+    integer, intent(in) :: components
+    !> Values of the 1D functions.
+    real(wp), intent(in) :: w(width, dim)
+    !> The nodes, x fastest. (width**dim)
+    integer, intent(in) :: node(*)
+    !> The field. (components, nn)
+    real(wp), intent(in) :: field(components, *)
+    !> The first components at the position.
+    real(wp), intent(out) :: value(dim)
+    real(wp) :: z, yz
+    integer :: i, j, k, e
+
+    value = 0.0_wp
+    e = 0
+    z = 1.0_wp
+    do k = 1, merge(width, 1, dim > 2)
+      if (dim > 2) z = w(k, dim)
+      do j = 1, merge(width, 1, dim > 1)
+        yz = z
+        if (dim > 1) yz = z*w(j, 2)
+        do i = 1, width
+          e = e + 1
+          value = value + (w(i, 1)*yz)*field(:dim, node(e))
+        end do
+      end do
+    end do
+  end subroutine value_at_corner
+
   !> Means over the corners of a box along the axes, which are products of 1D means.
   !!
   !! S = [N(x + a) + N(x - a)]/2 and [N(x + a) - N(x - a)]/2a in each direction.
@@ -201,12 +249,12 @@ contains
     real(wp), intent(in) :: half(dim)
     !> Entries of the nodes of the box, x fastest.
     real(wp), intent(out) :: basis(0:dim, counts(1)*counts(2)*counts(3))
-    real(wp) :: s(maxval(counts), 3), g(maxval(counts), 3), sz, gz, ss, gs, sg
+    real(wp) :: s(most, 3), g(most, 3), sz, gz, ss, gs, sg
     integer :: d, i, j, k, e
 
-    s = 0.0_wp
-    g = 0.0_wp
     do d = 1, dim
+      s(width + 1:counts(d), d) = 0.0_wp
+      g(width + 1:counts(d), d) = 0.0_wp
       s(:width, d) = 0.5_wp*w(:, d, 1)
       g(:width, d) = -(0.5_wp/half(d))*w(:, d, 1)
       associate (b => behind(d))
@@ -215,6 +263,7 @@ contains
       end associate
     end do
     s(1, dim + 1:) = 1.0_wp
+    g(1, dim + 1:) = 0.0_wp
     e = 0
     do k = 1, counts(3)
       sz = s(k, 3)
@@ -266,15 +315,13 @@ contains
     real(wp), intent(in) :: slope(dim, corners)
     !> Entries of the nodes of the box, x fastest.
     real(wp), intent(out) :: basis(0:dim, 0:counts(1)*counts(2)*counts(3) - 1)
-    real(wp) :: factor(0:dim), z, yz
+    real(wp) :: value, z, yz
     integer :: c, i, j, k, e, row, rows, layers
 
     basis = 0.0_wp
     rows = merge(width, 1, dim > 1)
     layers = merge(width, 1, dim > 2)
     do c = 1, corners
-      factor(0) = weight(c)
-      factor(1:) = slope(:, c)
       do k = 1, layers
         z = 1.0_wp
         if (dim > 2) z = w(k, dim, c)
@@ -284,7 +331,11 @@ contains
           row = first(1, c) + counts(1)*(first(2, c) + j - 1 + counts(2)*(first(3, c) + k - 1))
           do i = 1, width
             e = row + i - 1
-            basis(:, e) = basis(:, e) + (w(i, 1, c)*yz)*factor
+            value = w(i, 1, c)*yz
+            basis(0, e) = basis(0, e) + weight(c)*value
+            basis(1, e) = basis(1, e) + slope(1, c)*value
+            if (dim > 1) basis(2, e) = basis(2, e) + slope(2, c)*value
+            if (dim > 2) basis(3, e) = basis(3, e) + slope(3, c)*value
           end do
         end do
       end do

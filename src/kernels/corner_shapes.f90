@@ -20,6 +20,29 @@ module mpm_corner_shapes
                           -1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, &
                           -1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp], [3, 8])
 
+  !> Distance of the Gauss points from the middle of the cube.
+  real(wp), parameter :: at = sqrt(1.0_wp/3.0_wp)
+  !> Counters of the tables below.
+  integer :: i, k
+  !> Functions of the corners at the eight Gauss points of the cube. (corner, point)
+  real(wp), parameter :: gauss_value(8, 8) = reshape([((0.125_wp* &
+                         (1.0_wp + at*corner_sign(1, i)*corner_sign(1, k))* &
+                         (1.0_wp + at*corner_sign(2, i)*corner_sign(2, k))* &
+                         (1.0_wp + at*corner_sign(3, i)*corner_sign(3, k)), i=1, 8), k=1, 8)], &
+                                                     [8, 8])
+  !> Their derivatives. (direction, corner, point)
+  real(wp), parameter :: gauss_slope(3, 8, 8) = reshape([(( &
+                         0.125_wp*corner_sign(1, i)* &
+                         (1.0_wp + at*corner_sign(2, i)*corner_sign(2, k))* &
+                         (1.0_wp + at*corner_sign(3, i)*corner_sign(3, k)), &
+                         0.125_wp*corner_sign(2, i)* &
+                         (1.0_wp + at*corner_sign(1, i)*corner_sign(1, k))* &
+                         (1.0_wp + at*corner_sign(3, i)*corner_sign(3, k)), &
+                         0.125_wp*corner_sign(3, i)* &
+                         (1.0_wp + at*corner_sign(1, i)*corner_sign(1, k))* &
+                         (1.0_wp + at*corner_sign(2, i)*corner_sign(2, k)), i=1, 8), k=1, 8)], &
+                                                        [3, 8, 8])
+
 contains
 
   !> Weights and gradients of the corners of an element, and its volume.
@@ -64,24 +87,24 @@ contains
     real(wp), intent(in) :: edge(dim, dim)
     !> Gradients. [1/m] (dim, 2**dim)
     real(wp), intent(out) :: slope(dim, 2**dim)
-    real(wp) :: cofactor(dim, dim), determinant
-    integer :: c
+    real(wp) :: f(3, 3), cofactor(3, 3), factor
+    integer :: c, d
 
-    select case (dim)
-    case (1)
-      cofactor = 1.0_wp
-    case (2)
-      cofactor(:, 1) = [edge(2, 2), -edge(1, 2)]
-      cofactor(:, 2) = [-edge(2, 1), edge(1, 1)]
-    case default
-      cofactor(:, 1) = cross(edge(:, 2), edge(:, 3))
-      cofactor(:, 2) = cross(edge(:, 3), edge(:, 1))
-      cofactor(:, 3) = cross(edge(:, 1), edge(:, 2))
-    end select
-    determinant = dot_product(edge(:, 1), cofactor(:, 1))
-    cofactor = (0.5_wp**dim/determinant)*cofactor
+    ! Unit edges in the directions that there are not.
+    f = 0.0_wp
+    f(1, 1) = 1.0_wp
+    f(2, 2) = 1.0_wp
+    f(3, 3) = 1.0_wp
+    f(:dim, :dim) = edge
+    cofactor(:, 1) = cross(f(:, 2), f(:, 3))
+    cofactor(:, 2) = cross(f(:, 3), f(:, 1))
+    cofactor(:, 3) = cross(f(:, 1), f(:, 2))
+    factor = 0.5_wp**dim/dot_product(f(:, 1), cofactor(:, 1))
+    slope = 0.0_wp
     do c = 1, 2**dim
-      slope(:, c) = matmul(cofactor, corner_sign(:dim, c))
+      do d = 1, dim
+        slope(:, c) = slope(:, c) + (factor*corner_sign(d, c))*cofactor(:dim, d)
+      end do
     end do
   end subroutine parallelepiped_slopes
 
@@ -129,27 +152,30 @@ contains
     real(wp), intent(out) :: slope(3, 8)
     !> Volume. [m3]
     real(wp), intent(out) :: volume
-    real(wp) :: at(3), one(3, 8), m(8), dm(8, 3), j(3, 3), cofactor(3, 3), determinant
-    integer :: g
+    real(wp) :: j(3, 3), cofactor(3, 3), determinant
+    integer :: g, c, d
 
     weight = 0.0_wp
     slope = 0.0_wp
     volume = 0.0_wp
     do g = 1, 8
-      at = corner_sign(:, g)*sqrt(1.0_wp/3.0_wp)
-      one = 1.0_wp + spread(at, 2, 8)*corner_sign
-      m = 0.125_wp*one(1, :)*one(2, :)*one(3, :)
-      dm(:, 1) = 0.125_wp*corner_sign(1, :)*one(2, :)*one(3, :)
-      dm(:, 2) = 0.125_wp*corner_sign(2, :)*one(1, :)*one(3, :)
-      dm(:, 3) = 0.125_wp*corner_sign(3, :)*one(1, :)*one(2, :)
-      j = matmul(corner, dm)
+      j = 0.0_wp
+      do c = 1, 8
+        do d = 1, 3
+          j(:, d) = j(:, d) + corner(:, c)*gauss_slope(d, c, g)
+        end do
+      end do
       cofactor(:, 1) = cross(j(:, 2), j(:, 3))
       cofactor(:, 2) = cross(j(:, 3), j(:, 1))
       cofactor(:, 3) = cross(j(:, 1), j(:, 2))
-      determinant = dot_product(j(:, 1), cofactor(:, 1))
+      determinant = j(1, 1)*cofactor(1, 1) + j(2, 1)*cofactor(2, 1) + j(3, 1)*cofactor(3, 1)
       volume = volume + determinant
-      weight = weight + determinant*m
-      slope = slope + matmul(cofactor, transpose(dm))
+      do c = 1, 8
+        weight(c) = weight(c) + determinant*gauss_value(c, g)
+        do d = 1, 3
+          slope(:, c) = slope(:, c) + cofactor(:, d)*gauss_slope(d, c, g)
+        end do
+      end do
     end do
   end subroutine hexahedron
 

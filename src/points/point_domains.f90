@@ -13,7 +13,7 @@
 !! When a corner lies outside the grid, the point uses the functions at its own position.
 module mpm_point_domains
   use mpm_corner_basis, only: add_box, add_corners, add_plain, corner_functions, keep_inside, &
-                              list_nodes, reaches_out
+                              list_nodes, reaches_out, value_at_corner
   use mpm_corner_shapes, only: corner_sign, element_factors, parallelepiped_slopes
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
@@ -86,6 +86,7 @@ module mpm_point_domains
     procedure :: save => point_domains_save
     !> Take them back.
     procedure :: restore => point_domains_restore
+    procedure, private :: get_corners
     procedure, private :: span
     procedure, private :: is_box
     procedure, private :: place_block
@@ -210,26 +211,41 @@ contains
     integer, intent(in) :: slot
     !> Corners. [m]
     real(wp) :: r(self%dim, 2**self%dim)
+
+    call self%get_corners(slot, r)
+  end function point_domains_corners
+
+  !> The same without a new array.
+  pure subroutine get_corners(self, slot, r)
+    !> The domains.
+    class(point_domains_t), intent(in) :: self
+    !> Slot of the point.
+    integer, intent(in) :: slot
+    !> Corners. [m]
+    real(wp), intent(out) :: r(self%dim, 2**self%dim)
     real(wp) :: half
-    integer :: c, d
+    integer :: c, d, k
 
     half = 0.5_wp*self%side(slot)
     do c = 1, 2**self%dim
-      select case (self%rule)
-      case (rule_cpgimp)
-        r(:, c) = half*self%stretch(:, slot)*corner_sign(:self%dim, c)
-      case (rule_cpdi)
-        do d = 1, self%dim
-          r(d, c) = half*dot_product(self%stretch((d - 1)*self%dim + 1:d*self%dim, slot), &
-                                     corner_sign(:self%dim, c))
-        end do
-      case (rule_cpdi2)
-        r(:, c) = self%corner((c - 1)*self%dim + 1:c*self%dim, slot)
-      case default
-        r(:, c) = half*corner_sign(:self%dim, c)
-      end select
+      do d = 1, self%dim
+        select case (self%rule)
+        case (rule_cpgimp)
+          r(d, c) = half*self%stretch(d, slot)*corner_sign(d, c)
+        case (rule_cpdi)
+          r(d, c) = 0.0_wp
+          do k = 1, self%dim
+            r(d, c) = r(d, c) + self%stretch((d - 1)*self%dim + k, slot)*corner_sign(k, c)
+          end do
+          r(d, c) = half*r(d, c)
+        case (rule_cpdi2)
+          r(d, c) = self%corner((c - 1)*self%dim + d, slot)
+        case default
+          r(d, c) = half*corner_sign(d, c)
+        end select
+      end do
     end do
-  end function point_domains_corners
+  end subroutine get_corners
 
   !> Weights and gradients of the corners of a domain.
   pure subroutine point_domains_factors(self, slot, weight, slope)
@@ -241,23 +257,28 @@ contains
     real(wp), intent(out) :: weight(2**self%dim)
     !> Gradients. [1/m]
     real(wp), intent(out) :: slope(self%dim, 2**self%dim)
-    real(wp) :: edge(self%dim, self%dim), volume
-    integer :: d
+    real(wp) :: r(24), edge(9), volume
+    integer :: d, k
 
     if (self%rule == rule_cpdi2) then
-      call element_factors(self%dim, self%corners(slot), weight, slope, volume)
+      call self%get_corners(slot, r)
+      call element_factors(self%dim, r, weight, slope, volume)
       return
     end if
     weight = 0.5_wp**self%dim
-    if (self%rule == rule_cpdi) then
-      edge = 0.5_wp*self%side(slot)*transpose(reshape(self%stretch(:, slot), [self%dim, self%dim]))
-    else
-      edge = 0.0_wp
-      do d = 1, self%dim
-        edge(d, d) = 0.5_wp*self%side(slot)
-        if (self%rule == rule_cpgimp) edge(d, d) = edge(d, d)*self%stretch(d, slot)
+    edge = 0.0_wp
+    do d = 1, self%dim
+      ! Component d of edge k.
+      do k = 1, self%dim
+        if (self%rule == rule_cpdi) then
+          edge((k - 1)*self%dim + d) = self%stretch((d - 1)*self%dim + k, slot)
+        else if (d == k) then
+          edge((k - 1)*self%dim + d) = 1.0_wp
+          if (self%rule == rule_cpgimp) edge((k - 1)*self%dim + d) = self%stretch(d, slot)
+        end if
       end do
-    end if
+    end do
+    edge = 0.5_wp*self%side(slot)*edge
     call parallelepiped_slopes(self%dim, edge, slope)
   end subroutine point_domains_factors
 
@@ -281,16 +302,23 @@ contains
     real(wp), intent(out) :: low(self%dim)
     !> Upper corner. [m]
     real(wp), intent(out) :: high(self%dim)
-    real(wp) :: r(self%dim, 2**self%dim)
+    real(wp) :: r(24)
+    integer :: d, c
 
     if (self%is_box()) then
       high = 0.5_wp*self%side(slot)
       if (self%rule == rule_cpgimp) high = high*self%stretch(:, slot)
       low = -high
     else
-      r = self%corners(slot)
-      low = minval(r, dim=2)
-      high = maxval(r, dim=2)
+      call self%get_corners(slot, r)
+      low = r(:self%dim)
+      high = low
+      do c = 1, 2**self%dim - 1
+        do d = 1, self%dim
+          low(d) = min(low(d), r(c*self%dim + d))
+          high(d) = max(high(d), r(c*self%dim + d))
+        end do
+      end do
     end if
   end subroutine span
 
@@ -352,26 +380,28 @@ contains
     integer, intent(in) :: b
     !> Positions. [m]
     real(wp), intent(in) :: x(self%dim, a:b)
-    real(wp) :: y(self%dim, 2, a:b), low(self%dim), high(self%dim)
-    integer :: first(3, 2, a:b), p
+    real(wp) :: y(3*block_size), low(3), high(3)
+    integer :: first(3, block_size), p, k
 
-    do p = a, b
-      call self%span(p, low, high)
-      self%is_plain(p) = reaches_out(stencil, x(:, p), low, high)
-      y(:, 1, p) = x(:, p)
-      y(:, 2, p) = x(:, p)
-      if (self%is_plain(p)) cycle
-      y(:, 1, p) = x(:, p) + low
-      y(:, 2, p) = x(:, p) + high
-    end do
-    call keep_inside(stencil, 2*(b - a + 1), y)
-    call corner_functions(stencil, 2*(b - a + 1), y, first)
-    do p = a, b
-      self%first(:, p) = first(:, 1, p)
-      self%counts(:, p) = 1
-      self%counts(:self%dim, p) = first(:self%dim, 2, p) - first(:self%dim, 1, p) &
-                                  + natural_width(stencil%kind)
-    end do
+    associate (dim => self%dim)
+      do p = a, b
+        call self%span(p, low, high)
+        self%is_plain(p) = reaches_out(stencil, x(:, p), low, high)
+        if (self%is_plain(p)) low = 0.0_wp
+        if (self%is_plain(p)) high = 0.0_wp
+        k = 2*(p - a)*dim
+        y(k + 1:k + dim) = x(:, p) + low(:dim)
+        y(k + dim + 1:k + 2*dim) = x(:, p) + high(:dim)
+      end do
+      call keep_inside(stencil, 2*(b - a + 1), y)
+      call corner_functions(stencil, 2*(b - a + 1), y, first)
+      do p = a, b
+        k = 2*(p - a)
+        self%first(:, p) = first(:, k + 1)
+        self%counts(:, p) = 1
+        self%counts(:dim, p) = first(:dim, k + 2) - first(:dim, k + 1) + natural_width(stencil%kind)
+      end do
+    end associate
   end subroutine place_block
 
   !> List the nodes of all points with the values and gradients of their functions.
@@ -424,14 +454,14 @@ contains
     integer, intent(in) :: b
     !> Positions. [m]
     real(wp), intent(in) :: x(self%dim, a:b)
-    real(wp) :: w(most_values), dw(most_values), y(self%dim, block_size)
+    real(wp) :: w(most_values), dw(most_values), y(3*block_size)
     integer :: first(3, block_size), corners, values, k, p
 
     corners = merge(2, 2**self%dim, self%is_box())
     values = natural_width(stencil%kind)*self%dim
     do p = a, b
       k = corners*(p - a)
-      call self%corner_positions(p, corners, x(:, p), y(:, k + 1:k + corners))
+      call self%corner_positions(p, corners, x(:, p), y(k*self%dim + 1))
     end do
     call keep_inside(stencil, corners*(b - a + 1), y)
     call corner_functions(stencil, corners*(b - a + 1), y, first, w, dw)
@@ -459,14 +489,18 @@ contains
     !> The positions; those of the point itself where its functions count. [m]
     real(wp), intent(out) :: y(self%dim, corners)
 
+    integer :: c
+
     if (self%is_plain(slot)) then
       y = 0.0_wp
     else if (self%is_box() .and. corners == 2) then
       call self%span(slot, y(:, 1), y(:, 2))
     else
-      y = self%corners(slot)
+      call self%get_corners(slot, y)
     end if
-    y = y + spread(x, 2, corners)
+    do c = 1, corners
+      y(:, c) = y(:, c) + x
+    end do
   end subroutine corner_positions
 
   !> Set the entries of a point on the box of all its nodes.
@@ -485,8 +519,8 @@ contains
     real(wp), intent(in) :: w(natural_width(stencil%kind)*self%dim*corners)
     !> Their derivatives. [1/m] (width, dim, corners)
     real(wp), intent(in) :: dw(natural_width(stencil%kind)*self%dim*corners)
-    real(wp) :: low(self%dim), high(self%dim), weight(2**self%dim), slope(self%dim, 2**self%dim)
-    integer :: from(3, corners), width, c
+    real(wp) :: low(3), high(3), weight(8), slope(24)
+    integer :: from(3, 8), width, c
 
     width = natural_width(stencil%kind)
     associate (counts => self%counts(:, slot), list => self%list, &
@@ -577,13 +611,13 @@ contains
 
     if (strain .and. allocated(self%stretch)) then
       do p = 1, n
-        l = transpose(reshape(gradient(:kin%dim**2, p), [kin%dim, kin%dim]))
         if (self%rule == rule_cpgimp) then
           do d = 1, kin%dim
-            self%stretch(d, a + p - 1) = self%stretch(d, a + p - 1)*exp(dt*l(d, d))
+            self%stretch(d, a + p - 1) = self%stretch(d, a + p - 1) &
+                                         *exp(dt*gradient((d - 1)*kin%dim + d, p))
           end do
         else
-          call deform(kin%dim, dt*l, self%stretch(:, a + p - 1))
+          call deform(kin%dim, dt, gradient(:kin%dim**2, p), self%stretch(:, a + p - 1))
         end if
       end do
     end if
@@ -595,24 +629,29 @@ contains
     end do
   end subroutine point_domains_follow
 
-  !> F <- exp(A) F with the Taylor polynomial of exp(A).
-  pure subroutine deform(dim, a, f)
+  !> F <- exp(dt L) F with the Taylor polynomial of exp(dt L), from the inside out.
+  pure subroutine deform(dim, dt, l, f)
     !> Dimensions.
     integer, intent(in) :: dim
-    !> dt L.
-    real(wp), intent(in) :: a(dim, dim)
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradient by rows: its columns here are the rows. [1/s]
+    real(wp), intent(in) :: l(dim, dim)
     !> F by rows.
-    real(wp), intent(inout) :: f(dim*dim)
-    real(wp) :: old(dim, dim), new(dim, dim)
-    integer :: k
+    real(wp), intent(inout) :: f(dim, dim)
+    real(wp) :: old(3, 3), next(3, 3)
+    integer :: k, i, j
 
-    ! Transposed, F**T <- F**T exp(A)**T, so that rows are columns.
-    old = reshape(f, [dim, dim])
-    new = old
+    old(:dim, :dim) = f
     do k = degree, 1, -1
-      new = old + matmul(new, transpose(a))/real(k, wp)
+      next(:dim, :dim) = old(:dim, :dim)
+      do i = 1, dim
+        do j = 1, dim
+          next(:dim, i) = next(:dim, i) + (dt/real(k, wp))*l(j, i)*f(:, j)
+        end do
+      end do
+      f = next(:dim, :dim)
     end do
-    f = reshape(new, [dim*dim])
   end subroutine deform
 
   !> Move the corners of a point with the grid.
@@ -635,60 +674,67 @@ contains
     real(wp), intent(in) :: l(kin%dim, kin%dim)
     !> Velocity of the grid at the point, then of the centroid. [m/s]
     real(wp), intent(inout) :: velocity(kin%dim)
-    real(wp) :: r(kin%dim, 2**kin%dim), v(kin%dim, 2**kin%dim), weight(2**kin%dim)
-    real(wp) :: slope(kin%dim, 2**kin%dim), centroid(kin%dim)
-    integer :: c
+    real(wp) :: r(24), v(24), weight(8), slope(24), centroid(3)
+    integer :: c, d, m
 
-    r = self%corners(slot)
-    if (self%is_plain(slot)) then
-      v = matmul(l, r) + spread(velocity, 2, 2**kin%dim)
-    else
-      call corner_velocities(kin, stencil, self%window, r + spread(x, 2, 2**kin%dim), &
-                             node_velocity, v)
-    end if
-    r = r + dt*v
-    call element_factors(kin%dim, r, weight, slope, self%content(slot))
-    centroid = matmul(r, weight)
-    ! A domain without volume has no centroid; `fit_volumes` reports it.
-    if (self%content(slot) > 0.0_wp) velocity = centroid/dt
-    do c = 1, 2**kin%dim
-      self%corner((c - 1)*kin%dim + 1:c*kin%dim, slot) = r(:, c) - centroid
-    end do
+    associate (dim => kin%dim)
+      m = dim*2**dim
+      call self%get_corners(slot, r)
+      if (self%is_plain(slot)) then
+        do c = 0, m - dim, dim
+          v(c + 1:c + dim) = velocity
+          do d = 1, dim
+            v(c + 1:c + dim) = v(c + 1:c + dim) + l(:, d)*r(c + d)
+          end do
+        end do
+      else
+        call corner_velocities(kin, stencil, self%window, x, r, node_velocity, v)
+      end if
+      r(:m) = r(:m) + dt*v(:m)
+      call element_factors(dim, r, weight, slope, self%content(slot))
+      centroid = 0.0_wp
+      do c = 1, 2**dim
+        centroid(:dim) = centroid(:dim) + weight(c)*r((c - 1)*dim + 1:c*dim)
+      end do
+      ! A domain without volume has no centroid; `fit_volumes` reports it.
+      if (self%content(slot) > 0.0_wp) velocity = centroid(:dim)/dt
+      do c = 1, m
+        self%corner(c, slot) = r(c) - centroid(mod(c - 1, dim) + 1)
+      end do
+    end associate
   end subroutine move_corners
 
   !> Velocities of the grid at corners.
-  pure subroutine corner_velocities(kin, stencil, window, corner, node_velocity, velocity)
+  pure subroutine corner_velocities(kin, stencil, window, x, corner, node_velocity, velocity)
     !> Component counts.
     type(kinematics_t), intent(in) :: kin
     !> Basis.
     type(stencil_t), intent(in) :: stencil
     !> Window of the node arrays.
     type(window_t), intent(in) :: window
-    !> Positions of the corners. [m]
+    !> Position of the point. [m]
+    real(wp), intent(in) :: x(kin%dim)
+    !> Corners from the position. [m]
     real(wp), intent(in) :: corner(kin%dim, 2**kin%dim)
     !> Nodal velocities. [m/s]
     real(wp), contiguous, intent(in) :: node_velocity(:, :)
     !> Velocities of the corners in the plane of the grid. [m/s]
     real(wp), intent(out) :: velocity(kin%dim, 2**kin%dim)
-    real(wp) :: w(4*kin%dim*2**kin%dim), dw(4*kin%dim*2**kin%dim), y(kin%dim, 2**kin%dim)
-    real(wp) :: basis(0:kin%dim, 4**kin%dim)
-    integer :: first(3, 2**kin%dim), node(4**kin%dim), counts(3), width, corners, c, e, v
+    real(wp) :: w(96), dw(96), y(24)
+    integer :: first(3, 8), node(64), counts(3), width, c
 
     width = natural_width(stencil%kind)
-    corners = 2**kin%dim
     counts = 1
     counts(:kin%dim) = width
-    y = corner
-    call keep_inside(stencil, corners, y)
-    call corner_functions(stencil, corners, y, first, w, dw)
-    velocity = 0.0_wp
-    do c = 1, corners
-      v = (c - 1)*width*kin%dim + 1
+    do c = 1, 2**kin%dim
+      y((c - 1)*kin%dim + 1:c*kin%dim) = x + corner(:, c)
+    end do
+    call keep_inside(stencil, 2**kin%dim, y)
+    call corner_functions(stencil, 2**kin%dim, y, first, w, dw)
+    do c = 1, 2**kin%dim
       call list_nodes(stencil, window, first(:, c), counts, node)
-      call add_plain(width, kin%dim, w(v), dw(v), basis)
-      do e = 1, width**kin%dim
-        velocity(:, c) = velocity(:, c) + basis(0, e)*node_velocity(:kin%dim, node(e))
-      end do
+      call value_at_corner(width, kin%dim, kin%nvel, w((c - 1)*width*kin%dim + 1), node, &
+                           node_velocity, velocity(:, c))
     end do
   end subroutine corner_velocities
 

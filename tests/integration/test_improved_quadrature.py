@@ -124,7 +124,7 @@ def test_same_frames_on_all_threads(mpm3d: Run, tmp_path: Path, lines: list[str]
     rows[:, 3] = np.abs(rows[:, 3])
     rows[:, 4] = 0.5 * (rows[:, 2] - 2.0)
     body = Body("block", rows, more='boundary-class = "CartesianSmoothBox"')
-    scene = Scene(2, [4.0, 4.0], [40, 40], [body], 0.006, rate=160.0, gravity=[0.0, -10.0])
+    scene = Scene(2, [4.0, 4.0], [40, 40], [body], 0.006, rate=200.0, gravity=[0.0, -10.0])
     frames = []
     for threads in ("1", "3"):
         folder = tmp_path / threads
