@@ -130,7 +130,7 @@ def lattice(
 
 @dataclass
 class Body:
-    """A body of elastic material."""
+    """A body, of elastic material unless it says otherwise."""
 
     name: str
     points: Points
@@ -138,10 +138,16 @@ class Body:
     poisson: float = 0.0
     #: Boundary: a class name, or lines of config.
     boundary: str = ""
+    #: Lines of config that replace the elastic material.
+    material: str = ""
 
     def section(self, rate: str = "jaumann") -> str:
         """Return the section of the config."""
         law = "" if rate == "jaumann" else f'material-str-props = {{rate = "{rate}"}}'
+        material = self.material or (
+            'material-class = "IsotropicLinearElasticity"\n'
+            f"    material-props = {{{self.youngs_modulus!r}, {self.poisson!r}}}\n    {law}"
+        )
         boundary = self.boundary
         if boundary and "=" not in boundary:
             boundary = f'boundary-class = "{boundary}"'
@@ -152,9 +158,7 @@ class Body:
     point-file = "{self.name}.points"
     point-class = "DefaultPoints"
     node-class = "DefaultNodes"
-    material-class = "IsotropicLinearElasticity"
-    material-props = {{{self.youngs_modulus!r}, {self.poisson!r}}}
-    {law}
+    {material}
     {boundary}
 }}
 """
