@@ -19,17 +19,23 @@ contains
     integer, intent(out) :: lo(3)
     !> Largest first node per direction; -1 when all points are outside.
     integer, intent(out) :: hi(3)
-    integer :: p, previous, base(3, 1)
+    integer :: base(3, block_size), first, nb, j, d, b_low, b_high
 
     lo = huge(1)
     hi = -1
-    previous = outside
-    do p = 1, n
-      if (key(p) == previous .or. key(p) == outside) cycle
-      previous = key(p)
-      call decode_keys(stencil, 1, key(p:p), base)
-      lo = min(lo, base(:, 1))
-      hi = max(hi, base(:, 1))
+    do first = 1, n, block_size
+      nb = min(block_size, n - first + 1)
+      call decode_keys(stencil, nb, key(first:first + nb - 1), base)
+      do d = 1, 3
+        b_low = huge(1)
+        b_high = -1
+        do j = 1, nb
+          b_low = min(b_low, merge(huge(1), base(d, j), key(first + j - 1) == outside))
+          b_high = max(b_high, merge(-1, base(d, j), key(first + j - 1) == outside))
+        end do
+        lo(d) = min(lo(d), b_low)
+        hi(d) = max(hi(d), b_high)
+      end do
     end do
   end subroutine base_bounds
 
@@ -52,18 +58,18 @@ contains
     integer, intent(out) :: order(n)
     !> Points in rows before each row; the last entry is n. (0:rows)
     integer, allocatable, intent(inout) :: row_offset(:)
-    integer, allocatable :: begin(:)
-    integer :: cell(block_size), base(3, block_size)
+    integer, allocatable :: begin(:), cell(:)
+    integer :: base(3, block_size)
     integer :: cells(3), first, nb, j, c, total, count, rows, row_size
 
     cells = hi - lo + 1
-    allocate (begin(0:product(cells) - 1))
+    allocate (begin(0:product(cells) - 1), cell(n))
     begin = 0
     do first = 1, n, block_size
       nb = min(block_size, n - first + 1)
       call decode_keys(stencil, nb, key(first:first + nb - 1), base)
-      call local_cells(nb, base, lo, cells, cell)
-      do j = 1, nb
+      call local_cells(nb, base, lo, cells, cell(first:first + nb - 1))
+      do j = first, first + nb - 1
         begin(cell(j)) = begin(cell(j)) + 1
       end do
     end do
@@ -79,14 +85,9 @@ contains
       total = total + count
     end do
     row_offset(rows) = total
-    do first = 1, n, block_size
-      nb = min(block_size, n - first + 1)
-      call decode_keys(stencil, nb, key(first:first + nb - 1), base)
-      call local_cells(nb, base, lo, cells, cell)
-      do j = 1, nb
-        begin(cell(j)) = begin(cell(j)) + 1
-        order(begin(cell(j))) = first + j - 1
-      end do
+    do j = 1, n
+      begin(cell(j)) = begin(cell(j)) + 1
+      order(begin(cell(j))) = j
     end do
   end subroutine sort_by_cell
 
