@@ -1,9 +1,9 @@
 !> Particle-to-grid scatter of mass, momentum and internal force.
 !!
-!! Two templates, compiled for each simulation TYPE and stencil width, with both known to the
-!! compiler: `p2g_narrow_template.inc` for two and three nodes in each direction,
-!! `p2g_wide_template.inc` for more. Points that share a stencil (the points of a cell) are summed
-!! into local accumulators, which are added to the grid once per cell.
+!! Templates, compiled for each simulation TYPE and stencil width, with both known to the compiler:
+!! `p2g_template.inc`, and `p2g_three_template.inc` for three nodes in each direction, which fill
+!! registers of four lanes badly. Points that share a stencil (the points of a cell) are summed into
+!! local accumulators, which are added to the grid once per cell.
 !!
 !! f_i = -sum_p V_p T_p . grad N_i(x_p); in TYPE 4 also f_r -= sum_p S_ip A_p T_tt and
 !! f_t += sum_p S_ip A_p T_rt with the meridian area A_p = V_p/r_p (Sulsky, Chen and Schreyer,
@@ -125,22 +125,22 @@ contains
 #define NSTRESS 3
 #define NAME p2g_1d_2
 #define WIDTH 2
-#include "p2g_narrow_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_1d_3
 #define WIDTH 3
-#include "p2g_narrow_template.inc"
+#include "p2g_three_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_1d_4
 #define WIDTH 4
-#include "p2g_wide_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_1d_5
 #define WIDTH 5
-#include "p2g_wide_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #undef DIM
@@ -151,22 +151,22 @@ contains
 #define NSTRESS 4
 #define NAME p2g_plane_2
 #define WIDTH 2
-#include "p2g_narrow_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_plane_3
 #define WIDTH 3
-#include "p2g_narrow_template.inc"
+#include "p2g_three_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_plane_4
 #define WIDTH 4
-#include "p2g_wide_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_plane_5
 #define WIDTH 5
-#include "p2g_wide_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #undef DIM
@@ -177,22 +177,22 @@ contains
 #define NSTRESS 6
 #define NAME p2g_3d_2
 #define WIDTH 2
-#include "p2g_narrow_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_3d_3
 #define WIDTH 3
-#include "p2g_narrow_template.inc"
+#include "p2g_three_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_3d_4
 #define WIDTH 4
-#include "p2g_wide_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_3d_5
 #define WIDTH 5
-#include "p2g_wide_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #undef DIM
@@ -204,22 +204,22 @@ contains
 #define HOOP
 #define NAME p2g_axisymmetric_2
 #define WIDTH 2
-#include "p2g_narrow_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_axisymmetric_3
 #define WIDTH 3
-#include "p2g_narrow_template.inc"
+#include "p2g_three_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_axisymmetric_4
 #define WIDTH 4
-#include "p2g_wide_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_axisymmetric_5
 #define WIDTH 5
-#include "p2g_wide_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #undef DIM
@@ -231,22 +231,22 @@ contains
 #define NSTRESS 6
 #define NAME p2g_out_of_plane_2
 #define WIDTH 2
-#include "p2g_narrow_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_out_of_plane_3
 #define WIDTH 3
-#include "p2g_narrow_template.inc"
+#include "p2g_three_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_out_of_plane_4
 #define WIDTH 4
-#include "p2g_wide_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_out_of_plane_5
 #define WIDTH 5
-#include "p2g_wide_template.inc"
+#include "p2g_template.inc"
 #undef NAME
 #undef WIDTH
 #undef DIM

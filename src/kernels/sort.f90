@@ -19,23 +19,30 @@ contains
     integer, intent(out) :: lo(3)
     !> Largest first node per direction; -1 when all points are outside.
     integer, intent(out) :: hi(3)
-    integer :: base(3, block_size), first, nb, j, d, b_low, b_high
+    integer :: p, previous, low, high, base(3, 1)
 
     lo = huge(1)
     hi = -1
-    do first = 1, n, block_size
-      nb = min(block_size, n - first + 1)
-      call decode_keys(stencil, nb, key(first:first + nb - 1), base)
-      do d = 1, 3
-        b_low = huge(1)
-        b_high = -1
-        do j = 1, nb
-          b_low = min(b_low, merge(huge(1), base(d, j), key(first + j - 1) == outside))
-          b_high = max(b_high, merge(-1, base(d, j), key(first + j - 1) == outside))
-        end do
-        lo(d) = min(lo(d), b_low)
-        hi(d) = max(hi(d), b_high)
+    if (stencil%dim == 1) then
+      low = huge(1)
+      high = -1
+      do p = 1, n
+        low = min(low, merge(huge(1), key(p), key(p) == outside))
+        high = max(high, key(p))
       end do
+      if (high < 0) return
+      lo = [low, 0, 0]
+      hi = [high, 0, 0]
+      return
+    end if
+    ! The points of a cell follow each other.
+    previous = outside
+    do p = 1, n
+      if (key(p) == previous .or. key(p) == outside) cycle
+      previous = key(p)
+      call decode_keys(stencil, 1, key(p:p), base)
+      lo = min(lo, base(:, 1))
+      hi = max(hi, base(:, 1))
     end do
   end subroutine base_bounds
 
