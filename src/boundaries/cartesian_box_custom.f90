@@ -197,13 +197,14 @@ contains
     !> The wall.
     type(box_wall_t), intent(inout) :: wall
     logical :: by_points
-    integer :: hi(3), node(3), i, j, k, n
+    integer :: hi(3), node(3), i, j, k, n, first, last
 
     by_points = faces%kin%sim_type == type_axisymmetric .and. axis_of(face) == 2
     call resize(wall%filled_area, wall%part%size())
     if (size(wall%filled_area) == 0) return
-    call nodal_volume(points%kin, points%stencil, wall%part, points%n_inside, &
-                      points%order(:points%n_inside), points%x, points%extent, points%volume, &
+    call points_near(points, wall%part, first, last)
+    call nodal_volume(points%kin, points%stencil, wall%part, last - first + 1, &
+                      points%order(first:last), points%x, points%extent, points%volume, &
                       .not. by_points, wall%filled_area)
     if (by_points) then
       wall%filled_area = wall%filled_area/(0.5_wp*faces%h(2))
@@ -221,6 +222,31 @@ contains
       end do
     end do
   end subroutine fill_area
+
+  !> The range in the order of cells that has all points which reach a part of the grid.
+  pure subroutine points_near(points, part, first, last)
+    !> The points, in order.
+    class(points_t), intent(in) :: points
+    !> The nodes.
+    type(window_t), intent(in) :: part
+    !> First of the points.
+    integer, intent(out) :: first
+    !> Last of the points; before the first when there are none.
+    integer, intent(out) :: last
+    integer :: low, high
+
+    first = 1
+    last = points%n_inside
+    if (last == 0 .or. any(points%stencil%periodic)) return
+    associate (d => points%stencil%dim)
+      low = max(0, part%lo(d) - points%stencil%width + 1 - points%lo(d))
+      high = min(ubound(points%row_offset, 1) - 1, part%lo(d) + part%n(d) - 1 - points%lo(d))
+    end associate
+    last = 0
+    if (high < low) return
+    first = points%row_offset(low) + 1
+    last = points%row_offset(high + 1)
+  end subroutine points_near
 
   !> Give an array a length, unless it has it.
   subroutine resize(values, n)
