@@ -17,6 +17,8 @@ from bench.scenes import SCENE, SCENES, write_scene
 
 #: Counts of instructions on record.
 RECORD = Path(__file__).parent / "instructions.json"
+#: The page with the tables.
+PAGE = Path(__file__).parents[1] / "docs" / "performance.md"
 #: Points of the sparse scene: a block of 64**3 in 1024**3 cells.
 SPARSE = 262_144
 #: Rows of the suite beside every scene on one thread: scene, points, threads.
@@ -64,6 +66,7 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--kernel", action="store_true", help="only the bare kernel and the triad")
     parser.add_argument("--json", type=Path, help="also write everything to this file")
     parser.add_argument("--compare", type=Path, help="compare with a file that --json wrote")
+    parser.add_argument("--document", action="store_true", help=f"put the tables into {PAGE.name}")
     counting = parser.add_argument_group("instructions per point and step, by valgrind")
     counting.add_argument("--instructions", action="store_true", help="count them")
     counting.add_argument("--check", action="store_true", help="fail if they grew by over 10 %%")
@@ -144,7 +147,11 @@ def main(arguments: argparse.Namespace) -> int:
     rows = time_scenes(arguments)
     record = read_record(RECORD) if RECORD.exists() else {}
     result |= {"instructions_per_point_and_step": record, "rows": rows}
-    print(*report.speedups(rows), *report.targets(rows, result["reference"]), sep="\n")
+    summary = [*report.speedups(rows), *report.targets(rows, result["reference"])]
+    print(*summary, sep="\n")
+    if arguments.document:
+        table = [version, "", report.HEADER, *map(report.line, rows), "", *summary]
+        PAGE.write_text(report.document(PAGE.read_text(), table))
     if arguments.compare:
         earlier = json.loads(arguments.compare.read_text())["rows"]
         print(*report.comparison(rows, earlier), sep="\n")

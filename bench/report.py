@@ -102,3 +102,11 @@ def comparison(rows: list[Row], earlier: list[Row]) -> list[str]:
             f"{new / old:>7.2f}"
         )
     return lines
+
+
+def document(page: str, lines: list[str]) -> str:
+    """Put a table between the marks of a page."""
+    head, rest = page.split("<!-- measured -->\n", 1)
+    _, tail = rest.split("<!-- end -->", 1)
+    table = "\n".join(lines)
+    return f"{head}<!-- measured -->\n```\n{table}\n```\n<!-- end -->{tail}"

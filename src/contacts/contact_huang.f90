@@ -132,7 +132,7 @@ contains
         call shared_nodes(first%nodes, second%nodes, self%window)
       end if
       if (self%window%size() == 0) return
-      call self%find_normals(grid, first, second)
+      call self%find_normals(grid, first, second, threads)
       deallocate (self%force)
       allocate (self%force(first%nodes%kin%nvel, self%window%size()))
       call add_forces(self%window, self%friction, self%normal, dt, implicit, threads, &
@@ -216,7 +216,7 @@ contains
   end subroutine shared_nodes
 
   !> Unit normals out of the first body at the shared nodes, 0 where there is no direction.
-  subroutine contact_huang_find_normals(self, grid, first, second)
+  subroutine contact_huang_find_normals(self, grid, first, second, threads)
     !> The contact.
     class(contact_huang_t), intent(inout) :: self
     !> The grid.
@@ -225,6 +225,8 @@ contains
     class(body_t), intent(in) :: first
     !> Second body.
     class(body_t), intent(in) :: second
+    !> Number of threads.
+    integer, intent(in) :: threads
     real(wp), allocatable :: other(:, :)
     real(wp) :: h
     integer :: nn, dim
@@ -236,10 +238,18 @@ contains
     end associate
     deallocate (self%normal)
     allocate (self%normal(first%nodes%kin%nvel, nn))
-    call body_normals(first, self%window, h, self%average_normals, self%normal)
-    if (.not. self%average_normals) return
+    if (.not. self%average_normals) then
+      call body_normals(first, self%window, h, .false., self%normal)
+      return
+    end if
     allocate (other(first%nodes%kin%nvel, nn))
+    !$omp parallel sections default(none) num_threads(useful_threads(threads, 64*nn)) &
+    !$omp shared(self, first, second, h, other)
+    !$omp section
+    call body_normals(first, self%window, h, .true., self%normal)
+    !$omp section
     call body_normals(second, self%window, h, .true., other)
+    !$omp end parallel sections
     ! Each is a unit vector or 0, so that one without a direction leaves the other.
     self%normal = self%normal - other
     call normalise(self%normal, spread(tiny_normal, 1, nn))

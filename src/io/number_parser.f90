@@ -9,7 +9,7 @@ module mpm_number_parser
   implicit none
   private
   public :: parse_integer, parse_real, parse_special
-  public :: exact_power, number_malformed, number_ok, number_too_large
+  public :: exact_power, multiply_exactly, number_malformed, number_ok, number_too_large
 
   !> The text is a number.
   integer, parameter :: number_ok = 0

@@ -2,11 +2,12 @@
 !!
 !! Up to 15 significant digits come from integer arithmetic: the number is scaled by exact powers of
 !! ten and rounded once. They are right to one unit of the last digit, and a number that was read
-!! from a decimal of so many digits gives that decimal back.
+!! from a decimal of so many digits gives that decimal back. For 16 and 17 digits the product with
+!! the power of ten is formed with all its bits; formatted output serves what is left.
 module mpm_number_text
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan
   use mpm_kinds, only: lp, wp
-  use mpm_number_parser, only: exact_power
+  use mpm_number_parser, only: exact_power, multiply_exactly
   implicit none
   private
   public :: append_integer, append_real, default_digits, max_number_length
@@ -46,6 +47,7 @@ contains
     integer, intent(in) :: digits
     integer(lp) :: mantissa
     integer :: n, power
+    logical :: certain
 
     if (.not. ieee_is_finite(number)) then
       call append_special(buffer, length, number)
@@ -64,7 +66,8 @@ contains
     if (n <= max_fast_digits .and. is_fast_size(abs(number), n)) then
       call scale_to_integer(abs(number), n, mantissa, power)
     else
-      call read_back_digits(abs(number), n, mantissa, power)
+      call exact_digits(abs(number), n, mantissa, power, certain)
+      if (.not. certain) call read_back_digits(abs(number), n, mantissa, power)
     end if
     call drop_trailing_zeros(mantissa, n)
     if (power >= -4 .and. power < 10) then
@@ -146,6 +149,55 @@ contains
       product = product/exact_power(left)
     end if
   end function scaled
+
+  !> The leading digits of a number, correctly rounded, for numbers of common size.
+  pure subroutine exact_digits(number, n, mantissa, power, certain)
+    !> The number, positive.
+    real(wp), intent(in) :: number
+    !> Significant digits, at most 17.
+    integer, intent(in) :: n
+    !> The digits, from 10**(n - 1) to 10**n - 1.
+    integer(lp), intent(out) :: mantissa
+    !> Power of ten of the first digit.
+    integer, intent(out) :: power
+    !> Whether they are found: otherwise the number is too large or small, or almost a tie.
+    logical, intent(out) :: certain
+    ! The part behind the digits errs by less than this.
+    real(wp), parameter :: doubt = 1.0e-6_wp
+    real(wp) :: high, low, first, rest
+    integer :: places, attempt
+
+    certain = .false.
+    mantissa = 0
+    power = shifta((exponent(number) - 1)*78913, 18)
+    do attempt = 1, 2
+      places = n - 1 - power
+      if (places < 0 .or. places > 44) return
+      call multiply_exactly(number, exact_power(min(places, 22)), high, low)
+      if (places > 22) then
+        first = high
+        rest = low*exact_power(places - 22)
+        call multiply_exactly(first, exact_power(places - 22), high, low)
+        low = low + rest
+      end if
+      if (high > 9.0e18_wp) return
+      mantissa = int(high, lp)
+      low = low + (high - real(mantissa, wp))
+      mantissa = mantissa + floor(low, lp)
+      low = low - aint(low)
+      if (low < 0.0_wp) low = low + 1.0_wp
+      if (abs(low - 0.5_wp) < doubt .or. min(low, 1.0_wp - low) < doubt .and. low > 0.0_wp) return
+      if (low > 0.5_wp) mantissa = mantissa + 1
+      if (mantissa >= integer_power(n)) then
+        power = power + 1
+      else if (mantissa < integer_power(n - 1)) then
+        power = power - 1
+      else
+        certain = .true.
+        return
+      end if
+    end do
+  end subroutine exact_digits
 
   !> The leading digits of a number, correctly rounded, by way of formatted output; slow.
   pure subroutine read_back_digits(number, n, mantissa, power)

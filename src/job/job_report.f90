@@ -26,7 +26,7 @@ contains
     integer(lp) :: steps, memory
     integer(lp) :: frames
     logical :: exact
-    integer :: dim
+    integer :: dim, points, i
 
     dim = job%model%kin%dim
     whole = job%model%grid%whole()
@@ -42,7 +42,12 @@ contains
     call report_bodies(job, exact)
     call line('contacts: '//to_text(size(job%model%contacts)))
     memory = job%memory()
-    call line('memory:  '//to_text(real(memory, wp)/1.0e6_wp, 3)//' MB for points and nodes')
+    points = 0
+    do i = 1, size(job%model%bodies)
+      points = points + job%model%bodies(i)%body%points%n
+    end do
+    call line('memory:  '//to_text(real(memory, wp)/1.0e6_wp, 3)//' MB for points and nodes, '// &
+              to_text(nint(real(memory, wp)/real(max(1, points), wp)))//' bytes a point')
     text = ' s, dt = '//to_text(job%model%dt)//' s, '//counted(steps, 'step')
     if (.not. exact) then
       text = ' s, dt at most '//to_text(job%model%dt)//' s, about '//counted(steps, 'step')

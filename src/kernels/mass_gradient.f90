@@ -3,7 +3,7 @@ module mpm_mass_gradient
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
   use mpm_seam, only: fold_ghosts
-  use mpm_stencil, only: axis_fraction, decode_keys, outside, stencil_t, stencil_weights
+  use mpm_stencil, only: axis_fraction, block_size, decode_keys, outside, stencil_t, stencil_weights
   use mpm_window, only: window_t
   implicit none
   private
@@ -99,8 +99,9 @@ contains
     real(wp), intent(in) :: mass(n)
     !> Gradients, components beyond dim 0. [kg/m] (nvel, nn)
     real(wp), intent(out) :: gradient(:, :)
-    real(wp) :: w(stencil%width, kin%dim, 1), dw(stencil%width, kin%dim, 1), m, r_floor
-    integer :: base(3, 1), rows, low, high, k, p, previous
+    real(wp) :: xb(kin%dim, block_size), eb(block_size), m(block_size), r_floor
+    real(wp) :: w(5*kin%dim*block_size), dw(5*kin%dim*block_size)
+    integer :: base(3, block_size), here(3, 1), rows, low, high, k, p, previous, nb, j, values
     logical :: near
 
     gradient = 0.0_wp
@@ -111,21 +112,33 @@ contains
       high = min(rows - 1, window%lo(d) + window%n(d) - 1 - first_row)
     end associate
     if (high < low) return
+    values = stencil%width*kin%dim
     previous = outside
     near = .false.
+    here = 0
+    nb = 0
     do k = row_offset(low) + 1, row_offset(high + 1)
       p = order(k)
       if (key(p) /= previous) then
         previous = key(p)
-        call decode_keys(stencil, 1, key(p:p), base)
-        near = reaches(stencil, kin%dim, base(:, 1), window)
+        call decode_keys(stencil, 1, key(p:p), here)
+        near = reaches(stencil, kin%dim, here(:, 1), window)
       end if
-      if (.not. near) cycle
-      call stencil_weights(stencil, 1, x(:, p), extent(p:p), base, w, dw)
-      m = mass(p)
-      if (kin%sim_type == type_axisymmetric) m = m/max(x(1, p), r_floor)
-      call add_point(stencil%width, kin%dim, base(:, 1), w(:, :, 1), dw(:, :, 1), m, window, &
-                     gradient)
+      if (near) then
+        nb = nb + 1
+        base(:, nb) = here(:, 1)
+        xb(:, nb) = x(:, p)
+        eb(nb) = extent(p)
+        m(nb) = mass(p)
+        if (kin%sim_type == type_axisymmetric) m(nb) = m(nb)/max(x(1, p), r_floor)
+      end if
+      if (nb == 0 .or. nb < block_size .and. k < row_offset(high + 1)) cycle
+      call stencil_weights(stencil, nb, xb, eb, base, w, dw)
+      do j = 1, nb
+        call add_point(stencil%width, kin%dim, base(:, j), w(values*(j - 1) + 1:values*j), &
+                       dw(values*(j - 1) + 1:values*j), m(j), window, gradient)
+      end do
+      nb = 0
     end do
   end subroutine sum_gradients
 
@@ -164,25 +177,30 @@ contains
     type(window_t), intent(in) :: window
     !> Gradients, added to. [kg/m]
     real(wp), intent(inout) :: gradient(:, :)
-    real(wp) :: factor
-    integer :: i, d, e, node(3), local(3), position, rest
+    real(wp) :: value(width, 3), slope(width, 3)
+    integer :: first(3), last(3), i, j, k, position
 
-    do i = 0, width**dim - 1
-      rest = i
-      local = 0
-      do d = 1, dim
-        local(d) = mod(rest, width)
-        rest = rest/width
-      end do
-      node = base + local
-      if (.not. window%holds(node)) cycle
-      position = window%index(node)
-      do d = 1, dim
-        factor = mass*dw(local(d) + 1, d)
-        do e = 1, dim
-          if (e /= d) factor = factor*w(local(e) + 1, e)
+    ! Unused directions have one function, 1.
+    value = 1.0_wp
+    slope = 0.0_wp
+    value(:, :dim) = w
+    slope(:, :dim) = dw
+    first = max(1, window%lo - base + 1)
+    last = min(width, window%lo + window%n - base)
+    last(dim + 1:) = 1
+    do k = first(3), last(3)
+      do j = first(2), last(2)
+        do i = first(1), last(1)
+          position = window%index(base + [i, j, k] - 1)
+          gradient(1, position) = gradient(1, position) &
+                                  + mass*slope(i, 1)*value(j, 2)*value(k, 3)
+          if (dim < 2) cycle
+          gradient(2, position) = gradient(2, position) &
+                                  + mass*slope(j, 2)*value(i, 1)*value(k, 3)
+          if (dim < 3) cycle
+          gradient(3, position) = gradient(3, position) &
+                                  + mass*slope(k, 3)*value(i, 1)*value(j, 2)
         end do
-        gradient(d, position) = gradient(d, position) + factor
       end do
     end do
   end subroutine add_point

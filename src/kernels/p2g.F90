@@ -1,8 +1,9 @@
 !> Particle-to-grid scatter of mass, momentum and internal force.
 !!
-!! One template (`p2g_template.inc`) compiled for each simulation TYPE and stencil width, with both
-!! known to the compiler. Points that share a stencil (the points of a cell) are summed into local
-!! accumulators, which are added to the grid once per cell.
+!! Templates, compiled for each simulation TYPE and stencil width, with both known to the compiler:
+!! `p2g_template.inc`, and `p2g_three_template.inc` for three nodes in each direction, which fill
+!! registers of four lanes badly. Points that share a stencil (the points of a cell) are summed into
+!! local accumulators, which are added to the grid once per cell.
 !!
 !! f_i = -sum_p V_p T_p . grad N_i(x_p); in TYPE 4 also f_r -= sum_p S_ip A_p T_tt and
 !! f_t += sum_p S_ip A_p T_rt with the meridian area A_p = V_p/r_p (Sulsky, Chen and Schreyer,
@@ -129,7 +130,7 @@ contains
 #undef WIDTH
 #define NAME p2g_1d_3
 #define WIDTH 3
-#include "p2g_template.inc"
+#include "p2g_three_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_1d_4
@@ -155,7 +156,7 @@ contains
 #undef WIDTH
 #define NAME p2g_plane_3
 #define WIDTH 3
-#include "p2g_template.inc"
+#include "p2g_three_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_plane_4
@@ -181,7 +182,7 @@ contains
 #undef WIDTH
 #define NAME p2g_3d_3
 #define WIDTH 3
-#include "p2g_template.inc"
+#include "p2g_three_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_3d_4
@@ -208,7 +209,7 @@ contains
 #undef WIDTH
 #define NAME p2g_axisymmetric_3
 #define WIDTH 3
-#include "p2g_template.inc"
+#include "p2g_three_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_axisymmetric_4
@@ -235,7 +236,7 @@ contains
 #undef WIDTH
 #define NAME p2g_out_of_plane_3
 #define WIDTH 3
-#include "p2g_template.inc"
+#include "p2g_three_template.inc"
 #undef NAME
 #undef WIDTH
 #define NAME p2g_out_of_plane_4

@@ -19,10 +19,23 @@ contains
     integer, intent(out) :: lo(3)
     !> Largest first node per direction; -1 when all points are outside.
     integer, intent(out) :: hi(3)
-    integer :: p, previous, base(3, 1)
+    integer :: p, previous, low, high, base(3, 1)
 
     lo = huge(1)
     hi = -1
+    if (stencil%dim == 1) then
+      low = huge(1)
+      high = -1
+      do p = 1, n
+        low = min(low, merge(huge(1), key(p), key(p) == outside))
+        high = max(high, key(p))
+      end do
+      if (high < 0) return
+      lo = [low, 0, 0]
+      hi = [high, 0, 0]
+      return
+    end if
+    ! The points of a cell follow each other.
     previous = outside
     do p = 1, n
       if (key(p) == previous .or. key(p) == outside) cycle
@@ -52,18 +65,18 @@ contains
     integer, intent(out) :: order(n)
     !> Points in rows before each row; the last entry is n. (0:rows)
     integer, allocatable, intent(inout) :: row_offset(:)
-    integer, allocatable :: begin(:)
-    integer :: cell(block_size), base(3, block_size)
+    integer, allocatable :: begin(:), cell(:)
+    integer :: base(3, block_size)
     integer :: cells(3), first, nb, j, c, total, count, rows, row_size
 
     cells = hi - lo + 1
-    allocate (begin(0:product(cells) - 1))
+    allocate (begin(0:product(cells) - 1), cell(n))
     begin = 0
     do first = 1, n, block_size
       nb = min(block_size, n - first + 1)
       call decode_keys(stencil, nb, key(first:first + nb - 1), base)
-      call local_cells(nb, base, lo, cells, cell)
-      do j = 1, nb
+      call local_cells(nb, base, lo, cells, cell(first:first + nb - 1))
+      do j = first, first + nb - 1
         begin(cell(j)) = begin(cell(j)) + 1
       end do
     end do
@@ -79,14 +92,9 @@ contains
       total = total + count
     end do
     row_offset(rows) = total
-    do first = 1, n, block_size
-      nb = min(block_size, n - first + 1)
-      call decode_keys(stencil, nb, key(first:first + nb - 1), base)
-      call local_cells(nb, base, lo, cells, cell)
-      do j = 1, nb
-        begin(cell(j)) = begin(cell(j)) + 1
-        order(begin(cell(j))) = first + j - 1
-      end do
+    do j = 1, n
+      begin(cell(j)) = begin(cell(j)) + 1
+      order(begin(cell(j))) = j
     end do
   end subroutine sort_by_cell
 

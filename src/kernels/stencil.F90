@@ -49,6 +49,8 @@ module mpm_stencil
   integer, parameter :: natural_width(3) = [2, 3, 4]
   !> Distance in cells by which the first node lies below the cell of the point.
   real(wp), parameter :: reach(3) = [0.0_wp, 0.5_wp, 1.0_wp]
+  !> 1/6, of the cubic splines.
+  real(wp), parameter :: sixth = 1.0_wp/6.0_wp
   !> Distance from a node, in cells, at which points of a wall cell are kept.
   real(wp), parameter :: few = 4.0_wp*epsilon(1.0_wp)
 
@@ -95,43 +97,19 @@ contains
     real(wp), intent(in) :: extent(n)
     !> b_x + (N_x + 1) (b_y + (N_y + 1) b_z). (n)
     integer, intent(out) :: key(n)
-    real(wp) :: inverse_h(3), top(3), s(3), a(3)
-    integer :: last(3), stride(3), p, d, b
-    logical :: inside, averaged
 
-    if (stencil%general()) then
+    if (any(stencil%periodic)) then
       call general_keys(stencil, n, x, extent, key)
       return
     end if
-    inverse_h = 1.0_wp/stencil%h
-    top = real(stencil%n_cells, wp)
-    last = max(0, stencil%n_cells + 1 - stencil%width)
-    stride = [1, stencil%n_cells(1) + 1, (stencil%n_cells(1) + 1)*(stencil%n_cells(2) + 1)]
-    do p = 1, n
-      inside = .true.
-      averaged = stencil%averaged
-      do d = 1, stencil%dim
-        s(d) = (x(d, p) - stencil%lower(d))*inverse_h(d)
-        inside = inside .and. s(d) >= 0.0_wp .and. s(d) <= top(d)
-        if (stencil%averaged) then
-          a(d) = 0.5_wp*extent(p)*inverse_h(d)
-          averaged = averaged .and. s(d) - a(d) >= 0.0_wp .and. s(d) + a(d) <= top(d)
-        end if
-      end do
-      if (.not. inside) then
-        key(p) = outside
-        cycle
-      end if
-      key(p) = 0
-      do d = 1, stencil%dim
-        if (averaged) then
-          b = int(s(d) - a(d))
-        else
-          b = int(s(d))
-        end if
-        key(p) = key(p) + stride(d)*min(b, last(d))
-      end do
-    end do
+    select case (stencil%dim)
+    case (1)
+      call keys_1d(stencil, n, x, extent, key)
+    case (2)
+      call keys_2d(stencil, n, x, extent, key)
+    case default
+      call keys_3d(stencil, n, x, extent, key)
+    end select
   end subroutine stencil_keys
 
   !> Whether a basis is neither hats nor their averages between walls.
@@ -163,7 +141,7 @@ contains
     first = max(0, min(first, self%n_cells(d) + 1 - width))
   end function stencil_first_node
 
-  !> Keys of points of any basis.
+  !> Keys of points of any basis, also in periodic directions.
   pure subroutine general_keys(stencil, n, x, extent, key)
     !> Basis.
     type(stencil_t), intent(in) :: stencil
@@ -236,6 +214,15 @@ contains
     integer, intent(out) :: base(3, n)
     integer :: p, row, previous, b(3)
 
+    if (stencil%dim == 1) then
+      do p = 1, n
+        base(1, p) = key(p)
+        base(2, p) = 0
+        base(3, p) = 0
+      end do
+      return
+    end if
+    ! The points of a cell follow each other.
     previous = outside
     b = 0
     do p = 1, n
@@ -395,7 +382,7 @@ contains
     !> Dimensions.
     integer, intent(in) :: dim
     !> Position in cells.
-    real(wp), intent(in) :: s(3)
+    real(wp), intent(in) :: s(dim)
     !> First node.
     integer, intent(in) :: base(3)
     !> Cells of the grid.
@@ -463,7 +450,7 @@ contains
     real(wp), intent(out) :: value(4)
     !> Derivatives with respect to the coordinate in cells.
     real(wp), intent(out) :: slope(4)
-    real(wp), parameter :: third = 1.0_wp/3.0_wp, sixth = 1.0_wp/6.0_wp
+    real(wp), parameter :: third = 1.0_wp/3.0_wp
     real(wp) :: t, u
 
     if (.not. periodic .and. base == 0 .and. s < 1.0_wp) then
@@ -575,6 +562,21 @@ contains
     dw(j + 1:j + n) = dw(j + 1:j + n) + value_share*value(:n) + slope_share*slope(:n)
   end subroutine add_functions
 
+#define DIM 1
+#define NAME keys_1d
+#include "keys_template.inc"
+#undef NAME
+#undef DIM
+#define DIM 2
+#define NAME keys_2d
+#include "keys_template.inc"
+#undef NAME
+#undef DIM
+#define DIM 3
+#define NAME keys_3d
+#include "keys_template.inc"
+#undef NAME
+#undef DIM
 #define DIM 1
 #define NAME weights_1d_2
 #define WIDTH 2

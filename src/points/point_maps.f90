@@ -161,14 +161,16 @@ contains
     !> Volumes at the nodes of `part`. [m3] (part%size())
     real(wp), intent(out) :: node_volume(:)
     real(wp), allocatable :: amount(:), sums(:, :), wanted(:, :)
-    integer :: n
+    integer :: n, first, last
 
-    n = points%n_inside
     if (.not. allocated(points%domains)) then
-      call nodal_volume(points%kin, points%stencil, part, n, points%order(:n), points%x, &
-                        points%extent, points%volume, per_radius, node_volume)
+      call points_near(points, part, first, last)
+      call nodal_volume(points%kin, points%stencil, part, last - first + 1, &
+                        points%order(first:last), points%x, points%extent, points%volume, &
+                        per_radius, node_volume)
       return
     end if
+    n = points%n_inside
     amount = points%volume(:n)
     if (per_radius .and. points%kin%sim_type == type_axisymmetric) then
       amount = amount/max(points%x(1, :n), axis_fraction*points%stencil%h(1))
@@ -180,6 +182,31 @@ contains
     end associate
     node_volume = wanted(1, :)
   end subroutine map_volume
+
+  !> The range in the order of cells that has all points which reach a part of the grid.
+  pure subroutine points_near(points, part, first, last)
+    !> The points, in order.
+    class(points_t), intent(in) :: points
+    !> The nodes.
+    type(window_t), intent(in) :: part
+    !> First of the points.
+    integer, intent(out) :: first
+    !> Last of the points; before the first when there are none.
+    integer, intent(out) :: last
+    integer :: low, high
+
+    first = 1
+    last = points%n_inside
+    if (last == 0 .or. any(points%stencil%periodic)) return
+    associate (d => points%stencil%dim)
+      low = max(0, part%lo(d) - points%stencil%width + 1 - points%lo(d))
+      high = min(ubound(points%row_offset, 1) - 1, part%lo(d) + part%n(d) - 1 - points%lo(d))
+    end associate
+    last = 0
+    if (high < low) return
+    first = points%row_offset(low) + 1
+    last = points%row_offset(high + 1)
+  end subroutine points_near
 
   !> Copy the values of the nodes that two windows share.
   pure subroutine copy_part(components, window, values, part, wanted)

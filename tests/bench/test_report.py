@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from bench.instructions import compare_counts, read_record, write_record
-from bench.report import HEADER, comparison, line, speedups, targets
+from bench.report import HEADER, comparison, document, line, speedups, targets
 
 
 def row(scene: str, threads: int, median: float, points: int = 250_000) -> dict:
@@ -61,3 +61,11 @@ def test_counts_that_grow_are_named(tmp_path: Path) -> None:
     grown = compare_counts({"a": 111.0, "c": 1.0}, record)
     assert [text.split(":")[0] for text in grown] == ["a", "c"]
     assert "the first" in path.read_text()
+
+
+def test_a_page_takes_a_table_again_and_again() -> None:
+    """What stood between the marks goes, the rest of the page stays."""
+    page = "before\n<!-- measured -->\nold\n<!-- end -->\nafter\n"
+    once = document(page, ["a", "b"])
+    assert once == "before\n<!-- measured -->\n```\na\nb\n```\n<!-- end -->\nafter\n"
+    assert document(once, ["a", "b"]) == once
