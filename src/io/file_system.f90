@@ -264,11 +264,12 @@ contains
             action='write', iostat=status)
       is_open = status == 0
       allocate (character(most) :: bytes)
-      do while (rest > 0 .and. status == 0)
+      do while (rest > 0 .and. is_open)
         n = int(min(rest, int(most, lp)))
         read (from, iostat=status) bytes(:n)
         if (status /= 0) exit
         write (to, iostat=status) bytes(:n)
+        if (status /= 0) exit
         rest = rest - n
       end do
       closed = 0
