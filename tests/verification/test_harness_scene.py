@@ -97,7 +97,7 @@ def test_config_names_what_the_scene_has(tmp_path: Path) -> None:
     path = scene.write(tmp_path / "run")
     text = path.read_text()
     assert (tmp_path / "run" / "bar.points").is_file()
-    assert "int-properties = {1, 0}" in text
+    assert "int-properties = {cpdi = 1, contact = 0}" in text
     assert "t = 0.0  dt = 0.1  TYPE = 1" in text
     assert 'boundary-class = "CartesianBox"' in text
     assert "material-props = {100000.0, 0.25}" in text
@@ -105,6 +105,19 @@ def test_config_names_what_the_scene_has(tmp_path: Path) -> None:
     assert "int-properties = {normals = 0}" in text
     rate = float(text.partition("properties = {")[2].partition("}")[0])
     assert 20.0 < rate < 20.0 * (1 + 1e-8)
+
+
+def test_mapping_and_seams_choose_the_grid() -> None:
+    """Each basis has a class, and one with periodic directions; uGIMP takes half of its box."""
+    assert 'class = "CartesianLinear"' in make_scene(mapping="cpdi").config()
+    assert 'class = "CartesianQuadratic"' in make_scene(mapping="quadratic").config()
+    seam = make_scene(mapping="cubic", periodic=[True]).grid_section()
+    assert 'class = "CartesianCubicCustom"' in seam
+    assert "int-properties = {4, 1}" in seam
+    assert 'class = "CartesianCustom"' in make_scene(periodic=[True]).grid_section()
+    assert "properties = {1.0, 0.0625}" in make_scene(mapping="ugimp").grid_section()
+    with pytest.raises(ValueError, match="quartic"):
+        make_scene(mapping="quartic").config()
 
 
 def test_section_takes_properties_by_place_or_name() -> None:

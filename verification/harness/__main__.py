@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 import time
 from pathlib import Path
@@ -26,6 +27,8 @@ def main() -> int:
     if unknown:
         sys.exit(f"scripts/verify: the matrix names cases without a file: {', '.join(unknown)}")
     if arguments.list:
+        # A reader that has seen enough, such as head, ends the list without a traceback.
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
         list_cases(cases, rows)
         return 0
     chosen = [row for row in rows if is_chosen(row, cases[row.case], arguments)]

@@ -14,6 +14,7 @@ import numpy as np
 
 from .frames import Series as Frames
 from .scene import Scene
+from .scheme import Scheme
 
 CASES = Path(__file__).resolve().parent.parent / "cases"
 
@@ -39,6 +40,11 @@ class Parameters:
     def text(self, name: str, default: str) -> str:
         """Return an option."""
         return self.options.get(name, default)
+
+    @property
+    def scheme(self) -> Scheme:
+        """Integrator, transfer and smoothing."""
+        return Scheme.of(self.options)
 
     def record(self) -> dict[str, Any]:
         """Return the parameters for a JSON line."""
@@ -179,6 +185,15 @@ class Case:
     #: Whether runs may end with exit status 3, the simulation went bad.
     may_fail: bool = False
     name: str = ""
+
+    def make_scene(self, p: Parameters) -> Scene:
+        """Return the scene of a run with the scheme of its row.
+
+        Boxes of uGIMP are as wide as the points lie apart.
+        """
+        made = self.scene(p)
+        made.scheme, made.box = p.scheme, 1.0 / p.ppc
+        return made
 
 
 def load_cases() -> dict[str, Case]:

@@ -12,6 +12,7 @@ import numpy as np
 from .case import Case, Finding
 from .matrix import Row
 from .scene import DIM
+from .scheme import OPTIONS, Scheme
 
 #: A row of the matrix, the records of its runs by rising resolution, and its findings.
 Judged = tuple[Row, list[dict[str, Any]], list[Finding]]
@@ -28,11 +29,14 @@ class Method:
     mapping: str
     contact: str
     ppc: int
+    #: What differs from USL with FLIP.
+    scheme: str = ""
 
     @property
     def kind(self) -> str:
-        """Mapping and contact rule."""
-        return self.mapping if self.contact == "-" else f"{self.mapping}, {self.contact}"
+        """Mapping, scheme and contact rule."""
+        contact = "" if self.contact == "-" else self.contact
+        return ", ".join(filter(None, [self.mapping, self.scheme, contact]))
 
     def __str__(self) -> str:
         """Return the name for legends and tables."""
@@ -105,7 +109,8 @@ def find_problems(cases: Mapping[str, Case], judged: Sequence[Judged]) -> list[P
     for row, records, _ in judged:
         curve = make_curve(row, records, cases[row.case].error)
         if curve is not None:
-            groups.setdefault((row.case, row.sim_type, row.options), []).append(curve)
+            options = tuple(item for item in row.options if item[0] not in OPTIONS)
+            groups.setdefault((row.case, row.sim_type, options), []).append(curve)
     shared = {
         name: shared_options([row for row, _, _ in judged if row.case == name]) for name in cases
     }
@@ -134,7 +139,7 @@ def make_curve(row: Row, records: Sequence[dict[str, Any]], measure: str) -> Cur
     if not good:
         return None
     return Curve(
-        Method(row.mapping, row.contact, row.ppc),
+        Method(row.mapping, row.contact, row.ppc, Scheme.of(dict(row.options)).label),
         tuple(record["cells"] for record in good),
         tuple(record["measures"][measure] for record in good),
         tuple(float(record["points"] * record["steps"]) for record in good),

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .case import Finding, Parameters
+from .scheme import GRIDS, Scheme
 
 MATRIX = Path(__file__).resolve().parent.parent / "matrix.csv"
 COLUMNS = ("case", "type", "mapping", "contact", "ppc", "resolution", "quick", "options", "expect")
@@ -108,6 +109,9 @@ def read_row(number: int, fields: list[str]) -> Row:
         tuple(sorted(read_options(options))),
         tuple(read_bounds(expect)),
     )
+    if row.mapping not in GRIDS:
+        raise ValueError(f'mapping "{row.mapping}" is not one of {", ".join(GRIDS)}')
+    Scheme.of(dict(row.options))
     if not set(row.quick) <= set(row.cells) or list(row.cells) != sorted(set(row.cells)):
         raise ValueError("resolutions must rise, and quick must be a part of them")
     return row

@@ -51,7 +51,7 @@ class Program:
 
 def sources_digest(case: str) -> str:
     """Return a digest of the files that decide what a run is and how it is measured."""
-    paths = [HARNESS / f"{name}.py" for name in ("scene", "frames", "norms", "theory")]
+    paths = [HARNESS / f"{name}.py" for name in ("scene", "scheme", "frames", "norms", "theory")]
     waiting, known = [CASES / f"{case}.py"], set()
     while waiting:
         path = waiting.pop()
@@ -103,7 +103,7 @@ def execute(program: Path, case: str, parameters: Parameters, timed: bool) -> di
     folder = Path(tempfile.mkdtemp(prefix="mpm3d-verify-"))
     try:
         module: Case = load_case(CASES / f"{case}.py")
-        scene = module.scene(parameters)
+        scene = module.make_scene(parameters)
         scene.write(folder)
         status, text, errors, seconds = run_program(program, folder)
         record |= {

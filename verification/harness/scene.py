@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from .scheme import GRIDS, Scheme
+
 Array = npt.NDArray[np.float64]
 
 #: Directions of the grid, and components of velocities, by TYPE.
@@ -137,8 +139,9 @@ class Body:
     #: Boundary: a class name, or lines of config.
     boundary: str = ""
 
-    def section(self) -> str:
+    def section(self, rate: str = "jaumann") -> str:
         """Return the section of the config."""
+        law = "" if rate == "jaumann" else f'material-str-props = {{rate = "{rate}"}}'
         boundary = self.boundary
         if boundary and "=" not in boundary:
             boundary = f'boundary-class = "{boundary}"'
@@ -151,6 +154,7 @@ class Body:
     node-class = "DefaultNodes"
     material-class = "IsotropicLinearElasticity"
     material-props = {{{self.youngs_modulus!r}, {self.poisson!r}}}
+    {law}
     {boundary}
 }}
 """
@@ -169,7 +173,7 @@ class Scene:
     dt: float
     #: Frames after the first, at equal intervals.
     frames: int = 1
-    #: `linear` or `cpdi` (corner-averaged).
+    #: One of `scheme.GRIDS`; `cpdi`: corner-averaged linear functions.
     mapping: str = "linear"
     #: `implicit` or `explicit`.
     contact_rule: str = "implicit"
@@ -181,6 +185,11 @@ class Scene:
     t_start: float = 0.0
     #: Significant digits of the frames.
     digits: int = 15
+    #: Directions in which the grid repeats, for each direction; none when empty.
+    periodic: Sequence[bool] = ()
+    #: `ugimp`: width of the boxes over the size of a cell along x.
+    box: float = 0.5
+    scheme: Scheme = field(default_factory=Scheme)
 
     @property
     def steps(self) -> int:
@@ -208,19 +217,23 @@ serializer
 }}
 driver
 {driver}
-solver
-{{
-    class = "ExplicitUSL"
-    int-properties = {{{int(self.mapping == "cpdi")}, {int(self.contact_rule == "implicit")}}}
-}}
-grid
-{{
-    class = "CartesianLinear"
-    properties = {{{numbers(self.lengths)}}}
-    int-properties = {{{numbers(self.cells)}}}
-}}
+{self.scheme.solver_section(self.mapping == "cpdi", self.contact_rule == "implicit")}
+{self.grid_section()}
 """
-        return head + "".join([*(body.section() for body in self.bodies), *self.contacts])
+        bodies = [body.section(self.scheme.rate) for body in self.bodies]
+        return head + "".join([*bodies, *self.contacts])
+
+    def grid_section(self) -> str:
+        """Return the section `grid` of the config."""
+        if self.mapping not in GRIDS:
+            raise ValueError(f'mapping "{self.mapping}" is not one of {", ".join(GRIDS)}')
+        name, reals, integers = GRIDS[self.mapping], list(self.lengths), list(self.cells)
+        if any(self.periodic):
+            integers += map(int, self.periodic)
+            name = "CartesianCustom" if name == "CartesianLinear" else f"{name}Custom"
+        if self.mapping == "ugimp":
+            reals.append(0.5 * self.box * self.lengths[0] / self.cells[0])
+        return f"grid\n{section(name, reals, integers)}"
 
     def write(self, folder: Path) -> Path:
         """Write points files and config; return the config."""

@@ -17,6 +17,7 @@ from matplotlib.lines import Line2D
 from PIL import Image  # matplotlib writes PNG files with it
 
 from .curves import Method, Problem, equal_costs
+from .scheme import GRIDS
 
 #: Width on paper [inch], resolution, and size of all text [pt].
 WIDTH, DPI, FONT = 6.9, 150, 8.0
@@ -78,7 +79,7 @@ def looks(problems: Sequence[Problem]) -> dict[str, Look]:
 
 def rank(method: Method) -> tuple[int, int]:
     """Order mappings and contact rules as a reader expects them."""
-    mappings, rules = ("linear", "cpdi"), ("-", "implicit", "explicit")
+    mappings, rules = tuple(GRIDS), ("-", "implicit", "explicit")
     return (
         rules.index(method.contact) if method.contact in rules else len(rules),
         mappings.index(method.mapping) if method.mapping in mappings else len(mappings),
