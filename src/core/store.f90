@@ -296,7 +296,7 @@ contains
     character(*), intent(in) :: name
     !> Values. (components, n)
     real(wp), contiguous, target, intent(in) :: values(:, :)
-    real(wp), pointer :: flat(:)
+    real(wp), pointer, contiguous :: flat(:)
 
     flat(1:size(values)) => values
     call self%write_reals(name, flat, shape(values, lp))
@@ -441,7 +441,7 @@ contains
     real(wp), allocatable, intent(inout) :: values(:, :)
     integer(lp), allocatable :: extents(:)
     real(wp), allocatable, target :: numbers(:, :)
-    real(wp), pointer :: flat(:)
+    real(wp), pointer, contiguous :: flat(:)
 
     call self%find_extents(name, 2, extents)
     if (allocated(self%failure)) return

@@ -3,13 +3,14 @@ module mpm_file_system
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funptr, c_int, &
                                          c_long, c_null_char, c_null_funptr, c_ptr, c_size_t
   use mpm_errors, only: err_io, error_t, raise
-  use mpm_files, only: delete_file, directory_of, is_directory, join_path, reason_against
+  use mpm_files, only: delete_file, directory_of, is_directory, join_path, process_id, &
+                       reason_against, rename_file
   use mpm_kinds, only: lp
   use mpm_strings, only: append_text, string_t, to_text
   implicit none
   private
-  public :: delete_leftovers, file_size, matching_files, reserve_space, set_environment, &
-            sync_file, truncate_file
+  public :: copy_file, delete_leftovers, exchange_files, file_size, matching_files
+  public :: reserve_space, set_environment, sync_file, truncate_file
 
   !> `glob_t` of Linux, for the C libraries that there are; other systems have other ones.
   type, bind(c) :: glob_result_t
@@ -75,6 +76,18 @@ module mpm_file_system
       !> 0 when done.
       integer(c_int) :: status
     end function c_truncate
+
+    !> POSIX `link`: give a file a second name.
+    function c_link(path, name) bind(c, name='link') result(status)
+      import :: c_char, c_int
+      implicit none
+      !> The path, ended by a null character.
+      character(kind=c_char), intent(in) :: path(*)
+      !> The second name, ended by a null character.
+      character(kind=c_char), intent(in) :: name(*)
+      !> 0 when done.
+      integer(c_int) :: status
+    end function c_link
 
     !> POSIX `posix_fallocate`: see that a part of a file has room on the disk.
     function c_fallocate(descriptor, first, length) bind(c, name='posix_fallocate') result(status)
@@ -228,6 +241,71 @@ contains
     call raise(error, err_io, 'writing failed: no room for '//to_text(n_bytes)//' bytes more', &
                file=path)
   end subroutine reserve_space
+
+  !> Copy a file over any of the other name.
+  subroutine copy_file(path, copy, error)
+    !> The file.
+    character(*), intent(in) :: path
+    !> The copy.
+    character(*), intent(in) :: copy
+    !> `err_io` when it can't be read or written.
+    type(error_t), allocatable, intent(out) :: error
+    integer, parameter :: most = 1048576
+    character(:), allocatable :: bytes
+    integer(lp) :: rest
+    integer :: from, to, status, closed, n
+    logical :: is_open
+
+    rest = file_size(path)
+    open (newunit=from, file=path, access='stream', form='unformatted', status='old', &
+          action='read', iostat=status)
+    if (status == 0) then
+      open (newunit=to, file=copy, access='stream', form='unformatted', status='replace', &
+            action='write', iostat=status)
+      is_open = status == 0
+      allocate (character(most) :: bytes)
+      do while (rest > 0 .and. is_open)
+        n = int(min(rest, int(most, lp)))
+        read (from, iostat=status) bytes(:n)
+        if (status /= 0) exit
+        write (to, iostat=status) bytes(:n)
+        if (status /= 0) exit
+        rest = rest - n
+      end do
+      closed = 0
+      if (is_open) close (to, iostat=closed)
+      if (closed /= 0) status = closed
+      close (from)
+    end if
+    ! What the run-time library still held may have been lost without a word.
+    rest = file_size(path) - file_size(copy)
+    if (status == 0 .and. rest == 0) return
+    call raise(error, err_io, 'writing failed: '//reason_against(copy, .true.), file=copy)
+  end subroutine copy_file
+
+  !> Exchange the names of two files; at each instant there is a whole one of the first name.
+  subroutine exchange_files(path, other, error)
+    !> The name that always leads to a file.
+    character(*), intent(in) :: path
+    !> The other name, in the same folder.
+    character(*), intent(in) :: other
+    !> `err_io` when a name can't be changed.
+    type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: third
+
+    third = other//'.tmp'//to_text(process_id())
+    call delete_file(third, error)
+    if (allocated(error)) return
+    if (c_link(trim(path)//c_null_char, third//c_null_char) == 0) then
+      call rename_file(other, path, error)
+      if (.not. allocated(error)) call rename_file(third, other, error)
+    else
+      ! A file system without second names.
+      call copy_file(path, third, error)
+      if (.not. allocated(error)) call rename_file(other, path, error)
+      if (.not. allocated(error)) call rename_file(third, other, error)
+    end if
+  end subroutine exchange_files
 
   !> Cut a file; one that is no longer than that stays.
   subroutine truncate_file(path, n_bytes, error)

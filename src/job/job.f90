@@ -84,6 +84,7 @@ contains
     end do
     call self%driver%run(self%model, self%solver, self%serializer, monitor, error, &
                          self%checkpoints)
+    call self%serializer%finish(self%model)
   end subroutine job_run
 
   !> Bytes held by the points and nodes of all bodies.

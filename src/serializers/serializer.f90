@@ -55,6 +55,8 @@ module mpm_serializer
     procedure(destination_i), deferred :: destination
     !> Whether a frame is due at a time.
     procedure :: due => serializer_due
+    !> End of the run, whether it went well or not.
+    procedure :: finish => serializer_finish
     !> Time of the next frame.
     procedure :: next_time => serializer_next_time
     procedure :: save => serializer_save
@@ -196,6 +198,17 @@ contains
     slack = 1.0e-6_wp*min(model%dt, time - model%time)
     due = time - model%t_start >= real(self%frames + self%skipped, wp)/self%rate - slack
   end function serializer_due
+
+  !> Most serializers have nothing to clear away.
+  subroutine serializer_finish(self, model)
+    !> The serializer.
+    class(serializer_t), intent(inout) :: self
+    !> The model at its end.
+    type(model_t), intent(in) :: model
+
+    associate (unused => self, unused_model => model)
+    end associate
+  end subroutine serializer_finish
 
   !> Time of the next frame, for a rate above 0.
   pure function serializer_next_time(self, model) result(time)

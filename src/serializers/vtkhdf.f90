@@ -6,7 +6,7 @@ module mpm_vtkhdf
   use mpm_description, only: description_t
   use mpm_errors, only: err_input, err_io, error_t, raise
   use mpm_field_names, only: field_names_t
-  use mpm_file_system, only: delete_leftovers, file_size, reserve_space
+  use mpm_file_system, only: copy_file, delete_leftovers, exchange_files, file_size, reserve_space
   use mpm_files, only: delete_file, file_exists, join_path, make_directories, process_id, &
                        rename_file
   use mpm_grid, only: grid_t
@@ -35,6 +35,8 @@ module mpm_vtkhdf
     integer :: deflate = 0
     !> Whether nodes are written, too.
     logical :: with_nodes = .false.
+    !> Whether each file has a spare one, so that one of them is whole at each instant.
+    logical :: with_spare = .true.
     !> Fields to write; none for all.
     type(string_t), allocatable :: fields(:)
     !> Components of a point or node in a frame, at most.
@@ -44,11 +46,14 @@ module mpm_vtkhdf
     procedure :: init => vtkhdf_init
     procedure :: open => vtkhdf_open
     procedure :: write_frame => vtkhdf_write_frame
+    procedure :: finish => vtkhdf_finish
     procedure :: destination => vtkhdf_destination
     procedure, private :: path
     procedure, private :: check_fields
     procedure, private :: create
     procedure, private :: cut
+    procedure, private :: prepare
+    procedure, private :: write_body
     procedure, private :: append_frame
   end type vtkhdf_t
 
@@ -74,6 +79,10 @@ contains
                                  &(small); 0: none', default=0, lower=0, upper=9)
     call description%add_integer('nodes', '1: write the nodes of each body, too', default=0, &
                                  lower=0, upper=1)
+    call description%add_integer('spare', '1: each file has a spare one while the run goes on, so &
+                                 &that a killed run leaves whole files; 0: half the writing, but a &
+                                 &run that is killed while it writes may leave a file that can''t &
+                                 &be read', default=1, lower=0, upper=1)
     call description%add_string('frame_folder', 'folder of the files, relative to the working &
                                 &directory; made when missing')
     call description%add_string('save_folder', 'folder of checkpoints, relative to the working &
@@ -108,6 +117,7 @@ contains
     self%rate = properties%real('rate')
     self%deflate = properties%integer('deflate')
     self%with_nodes = properties%integer('nodes') == 1
+    self%with_spare = properties%integer('spare') == 1
     self%folder = properties%string('frame_folder')
     call properties%strings('fields', self%fields)
     call self%init_saving(properties)
@@ -140,21 +150,75 @@ contains
     call delete_leftovers(self%folder, 'nodes.')
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
-        if (self%frames == 0) then
-          call self%create(model, body, .false., error)
-          if (.not. allocated(error) .and. self%with_nodes) then
-            call self%create(model, body, .true., error)
-          end if
-        else
-          call self%cut(self%path('points', body), body%points%n, error)
-          if (.not. allocated(error) .and. self%with_nodes) then
-            call self%cut(self%path('nodes', body), whole_size(model%grid), error)
-          end if
+        call self%prepare(model, body, .false., error)
+        if (.not. allocated(error) .and. self%with_nodes) then
+          call self%prepare(model, body, .true., error)
         end if
         if (allocated(error)) return
       end associate
     end do
   end subroutine vtkhdf_open
+
+  !> Make a file, or go on in that of an earlier run; make its spare.
+  subroutine prepare(self, model, body, of_nodes, error)
+    !> The serializer.
+    class(vtkhdf_t), intent(in) :: self
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> The body.
+    class(body_t), intent(in) :: body
+    !> Of the nodes; otherwise of the points.
+    logical, intent(in) :: of_nodes
+    !> It can't be written, or is not what it was.
+    type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: path
+    integer :: n
+    logical :: found
+
+    path = self%path('points', body)
+    if (of_nodes) path = self%path('nodes', body)
+    n = body%points%n
+    if (of_nodes) n = whole_size(model%grid)
+    found = file_exists(path)
+    if (self%frames == 0) then
+      call self%create(model, body, of_nodes, error)
+    else if (self%with_spare .and. found) then
+      call copy_file(path, spare_of(path), error)
+      if (.not. allocated(error)) call self%cut(spare_of(path), n, error)
+      if (.not. allocated(error)) call rename_file(spare_of(path), path, error)
+    else
+      call self%cut(path, n, error)
+    end if
+    if (.not. allocated(error) .and. self%with_spare) call copy_file(path, spare_of(path), error)
+  end subroutine prepare
+
+  !> Name of a spare file.
+  pure function spare_of(path) result(spare)
+    !> The file.
+    character(*), intent(in) :: path
+    !> Its spare.
+    character(:), allocatable :: spare
+
+    spare = path//'.spare'
+  end function spare_of
+
+  !> Delete the spare files.
+  subroutine vtkhdf_finish(self, model)
+    !> The serializer.
+    class(vtkhdf_t), intent(inout) :: self
+    !> The model at its end.
+    type(model_t), intent(in) :: model
+    type(error_t), allocatable :: ignored
+    integer :: i
+
+    if (.not. self%with_spare) return
+    do i = 1, size(model%bodies)
+      associate (body => model%bodies(i)%body)
+        call delete_file(spare_of(self%path('points', body)), ignored)
+        if (self%with_nodes) call delete_file(spare_of(self%path('nodes', body)), ignored)
+      end associate
+    end do
+  end subroutine vtkhdf_finish
 
   !> Every field that is asked for is one that an object has.
   subroutine check_fields(self, model, error)
@@ -382,18 +446,21 @@ contains
 
     total = 0
     do i = 1, size(model%bodies)
-      call self%append_frame(model, model%bodies(i)%body, .false., total, error)
+      call self%write_body(model, model%bodies(i)%body, .false., total, error)
       if (allocated(error)) return
       if (.not. self%with_nodes) cycle
-      call self%append_frame(model, model%bodies(i)%body, .true., total, error)
+      call self%write_body(model, model%bodies(i)%body, .true., total, error)
       if (allocated(error)) return
     end do
     self%bytes = total
     self%frames = self%frames + 1
   end subroutine vtkhdf_write_frame
 
-  !> Write the state of a body as the next frame of a file.
-  subroutine append_frame(self, model, body, of_nodes, total, error)
+  !> Write the state of a body as the next frame of a file and its spare.
+  !!
+  !! The library changes a file in many places, between which it is not whole: that is done to the
+  !! spare one, which then takes the name.
+  subroutine write_body(self, model, body, of_nodes, total, error)
     !> The serializer.
     class(vtkhdf_t), intent(in) :: self
     !> The state.
@@ -406,14 +473,44 @@ contains
     integer(lp), intent(inout) :: total
     !> Writing failed, or a value is not finite.
     type(error_t), allocatable, intent(out) :: error
-    type(hdf5_fields_t), allocatable :: fields
     character(:), allocatable :: path
+
+    path = self%path('points', body)
+    if (of_nodes) path = self%path('nodes', body)
+    if (self%with_spare) then
+      call self%append_frame(model, body, of_nodes, spare_of(path), error)
+      if (.not. allocated(error)) call exchange_files(path, spare_of(path), error)
+      if (.not. allocated(error)) then
+        call self%append_frame(model, body, of_nodes, spare_of(path), error)
+      end if
+      if (allocated(error)) then
+        if (len(error%file) > 0) error%file = path
+      end if
+    else
+      call self%append_frame(model, body, of_nodes, path, error)
+    end if
+    total = total + file_size(path)
+  end subroutine write_body
+
+  !> Write the state of a body as the next frame of a file.
+  subroutine append_frame(self, model, body, of_nodes, path, error)
+    !> The serializer.
+    class(vtkhdf_t), intent(in) :: self
+    !> The state.
+    type(model_t), intent(in) :: model
+    !> The body.
+    class(body_t), intent(in) :: body
+    !> Its nodes; otherwise its points.
+    logical, intent(in) :: of_nodes
+    !> The file.
+    character(*), intent(in) :: path
+    !> Writing failed, or a value is not finite.
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_fields_t), allocatable :: fields
     real(wp), allocatable, target :: x(:)
     integer(lp) :: columns
     integer :: i
 
-    path = self%path('points', body)
-    if (of_nodes) path = self%path('nodes', body)
     allocate (fields)
     fields%kin = model%kin
     fields%step = self%frames
@@ -463,7 +560,6 @@ contains
       error%code = err_io
     end if
     if (allocated(fields%failure)) call move_alloc(fields%failure, error)
-    total = total + file_size(path)
   end subroutine append_frame
 
   !> Bytes that a file may grow by in a frame: whole chunks, and what the library adds.

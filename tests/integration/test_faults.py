@@ -87,9 +87,11 @@ def check_hdf(folder: Path, expected: dict[str, bytes], least: set[str]) -> set[
         for step in {0, series.n // 2, series.n - 1} & set(range(series.n)):
             series.frame(step)
         with h5py.File(path) as file:
+            # What is behind the last whole frame need not be readable.
+            entries = series.n * file["VTKHDF/NumberOfPoints"][0]
             for values in file["VTKHDF/PointData"].values():
-                assert len(values) >= series.n * file["VTKHDF/NumberOfPoints"][0]
-                assert np.all(np.isfinite(values[()]))
+                assert len(values) >= entries
+                assert np.all(np.isfinite(values[:entries]))
     assert least <= whole
     assert expected
     return whole
