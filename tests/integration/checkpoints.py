@@ -64,6 +64,8 @@ SOFTER = {
     "BreakageMechanicsSand": [
         ("p_r = 1e3, K = 12000, G = 9000", "p_r = 10, K = 1200, G = 900"),
         ("E_c = 3.5e4", "E_c = 1500"),
+        # The crash is more than grains this soft can bear: they begin loose.
+        ("phi_0 = 0.4", "phi_0 = 0.6"),
     ],
 }
 

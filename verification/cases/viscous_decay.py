@@ -115,7 +115,7 @@ Expected: **second order**, with the error of lumped mass that waves have, twice
 square of a frequency: $-2\kappa(kh)^2$, $\kappa = 1/8 + 1/(24n^2)$ for $n$ points a cell. The step
 is $\nu\,dt = 0.02\,h^2$, so that its error is small beside that.
 """,
-    source="Batchelor, An Introduction to Fluid Dynamics (1967), section 4.3; error law derived here",
+    source="Batchelor, An Introduction to Fluid Dynamics (1967), 4.3; error law derived here",
     scene=scene,
     measure=measure,
     judge=judge,

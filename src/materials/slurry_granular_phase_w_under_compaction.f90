@@ -1,5 +1,5 @@
 !> The grains of a mixture whose loose packings rest under pressure.
-module mpm_slurry_granular_phase_with_under_compaction
+module mpm_slurry_granular_phase_w_under_compaction
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
   use mpm_kinds, only: wp
@@ -8,14 +8,14 @@ module mpm_slurry_granular_phase_with_under_compaction
   use mpm_slurry_granular_phase, only: add_slurry_properties, slurry_granular_phase_t
   implicit none
   private
-  public :: slurry_granular_phase_with_under_compaction_t
+  public :: slurry_granular_phase_w_under_compaction_t
 
   !> As `slurry_granular_phase_t`, with pressure at rest from the loosest packing phi_c on.
-  type, extends(slurry_granular_phase_t) :: slurry_granular_phase_with_under_compaction_t
+  type, extends(slurry_granular_phase_t) :: slurry_granular_phase_w_under_compaction_t
   contains
     procedure, nopass :: describe => with_under_compaction_describe
     procedure :: init => with_under_compaction_init
-  end type slurry_granular_phase_with_under_compaction_t
+  end type slurry_granular_phase_w_under_compaction_t
 
 contains
 
@@ -46,7 +46,7 @@ contains
   !> Set the constants from the properties.
   subroutine with_under_compaction_init(self, kin, properties, error)
     !> The material.
-    class(slurry_granular_phase_with_under_compaction_t), intent(inout) :: self
+    class(slurry_granular_phase_w_under_compaction_t), intent(inout) :: self
     !> Component counts.
     type(kinematics_t), intent(in) :: kin
     !> Checked properties.
@@ -62,4 +62,4 @@ contains
                            &looser than the critical one')
   end subroutine with_under_compaction_init
 
-end module mpm_slurry_granular_phase_with_under_compaction
+end module mpm_slurry_granular_phase_w_under_compaction
