@@ -15,6 +15,7 @@ module mpm_cartesian_box_custom
   use mpm_point_maps, only: map_volume
   use mpm_points, only: points_t
   use mpm_properties, only: properties_t
+  use mpm_stencil, only: basis_hat, stencil_t
   use mpm_window, only: window_t
   implicit none
   private
@@ -145,13 +146,15 @@ contains
     class(nodes_t), intent(in) :: nodes
     integer :: face
 
+    associate (unused => grid)
+    end associate
     do face = 1, self%faces%n
       self%walls(face)%part = self%faces%part(face, nodes%window)
       select case (self%walls(face)%code)
       case (wall_friction)
         call keep_own_force(axis_of(face), nodes, self%walls(face))
       case (wall_traction, wall_bounded)
-        call fill_area(self%faces, face, grid, points, self%walls(face))
+        call fill_area(self%faces, face, points, self%walls(face))
       case default
         cycle
       end select
@@ -182,44 +185,92 @@ contains
 
   !> Area of a wall at its nodes, times the fraction that is filled with points.
   !!
-  !! On faces of constant z in TYPE 4 the area is that of the points, sum_p N_i V_p over half a
-  !! cell: it belongs to the nodal masses and forces, so that a uniform traction balances a uniform
-  !! stress, which the exact integral of r does not.
-  subroutine fill_area(faces, face, grid, points, wall)
+  !! For hats the fraction is sum_p N_i V_p over the integral of N_i, which is 1 where points fill
+  !! the cells evenly. On faces of constant z in TYPE 4 the area is that of the points, sum_p N_i
+  !! V_p over half a cell: it belongs to the nodal masses and forces, so that a uniform traction
+  !! balances a uniform stress, which the exact integral of r does not.
+  !!
+  !! The sums of smoother functions next to a wall differ from their integrals. They give the
+  !! distribution of the area over the nodes, which belongs to masses and forces; hats give its sum.
+  subroutine fill_area(faces, face, points, wall)
     !> The faces.
     type(box_faces_t), intent(in) :: faces
     !> Face of the wall.
     integer, intent(in) :: face
-    !> The grid.
-    class(grid_t), intent(in) :: grid
     !> Points of the body.
     class(points_t), intent(in) :: points
     !> The wall.
     type(box_wall_t), intent(inout) :: wall
-    logical :: by_points, per_radius
-    integer :: hi(3), node(3), i, j, k, n
+    real(wp), allocatable :: by_basis(:)
+    logical :: around_axis
 
-    by_points = faces%kin%sim_type == type_axisymmetric .and. axis_of(face) == 2
     call resize(wall%filled_area, wall%part%size())
     if (size(wall%filled_area) == 0) return
-    per_radius = .not. by_points
-    call map_volume(points, wall%part, per_radius, wall%filled_area)
-    if (by_points) then
+    if (points%stencil%kind == basis_hat) then
+      call fill_hats(faces, face, points, wall)
+      return
+    end if
+    around_axis = faces%kin%sim_type == type_axisymmetric .and. axis_of(face) == 1
+    call map_volume(points, wall%part, around_axis, wall%filled_area, by_hats=.true.)
+    wall%filled_area = wall%filled_area/(0.5_wp*faces%h(axis_of(face)))
+    if (around_axis) then
+      wall%filled_area = merge(faces%lower(1), faces%upper(1), is_lower(face))*wall%filled_area
+    end if
+    allocate (by_basis(size(wall%filled_area)))
+    call map_volume(points, wall%part, around_axis, by_basis)
+    if (sum(by_basis) > 0.0_wp) then
+      wall%filled_area = by_basis*(sum(wall%filled_area)/sum(by_basis))
+    end if
+  end subroutine fill_area
+
+  !> The area of a wall by hats.
+  subroutine fill_hats(faces, face, points, wall)
+    !> The faces.
+    type(box_faces_t), intent(in) :: faces
+    !> Face of the wall.
+    integer, intent(in) :: face
+    !> Points of the body.
+    class(points_t), intent(in) :: points
+    !> The wall.
+    type(box_wall_t), intent(inout) :: wall
+    integer :: hi(3), node(3), i, j, k, n
+
+    if (faces%kin%sim_type == type_axisymmetric .and. axis_of(face) == 2) then
+      call map_volume(points, wall%part, .false., wall%filled_area)
       wall%filled_area = wall%filled_area/(0.5_wp*faces%h(2))
       return
     end if
+    call map_volume(points, wall%part, .true., wall%filled_area)
     hi = wall%part%hi()
     do k = wall%part%lo(3), hi(3)
       do j = wall%part%lo(2), hi(2)
         do i = wall%part%lo(1), hi(1)
           node = [i, j, k]
           n = wall%part%index(node)
-          wall%filled_area(n) = faces%area(face, node)*wall%filled_area(n) &
-                                /grid%node_volume(node)
+          wall%filled_area(n) = faces%area(face, node)*wall%filled_area(n)/ &
+                                hat_volume(points%stencil, node)
         end do
       end do
     end do
-  end subroutine fill_area
+  end subroutine fill_hats
+
+  !> Integral of the hat of a node over the grid (TYPE 4: over the meridian plane).
+  pure function hat_volume(stencil, node) result(volume)
+    !> Basis, for the cells.
+    type(stencil_t), intent(in) :: stencil
+    !> Grid indices of the node, from 0.
+    integer, intent(in) :: node(3)
+    !> Product over the directions of h, of h/2 at walls. [m3]
+    real(wp) :: volume
+    integer :: d
+
+    volume = 1.0_wp
+    do d = 1, stencil%dim
+      volume = volume*stencil%h(d)
+      if (stencil%periodic(d)) cycle
+      if (node(d) == 0 .or. node(d) == stencil%n_cells(d)) volume = 0.5_wp*volume
+    end do
+  end function hat_volume
 
   !> Give an array a length, unless it has it.
   subroutine resize(values, n)

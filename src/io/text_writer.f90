@@ -304,13 +304,15 @@ contains
     integer :: status
     integer(lp) :: size_in_bytes
     character(256) :: reason
+    logical :: is_there
 
     reason = 'the disk may be full'
     close (self%unit, iostat=status, iomsg=reason)
     self%is_open = .false.
     if (allocated(self%failure)) return
     ! what the run-time library still held may have been lost without a word
-    inquire (file=self%temporary, size=size_in_bytes)
+    inquire (file=self%temporary, size=size_in_bytes, exist=is_there)
+    if (.not. is_there) reason = reason_against(self%path, replaces_file=.true.)
     if (status == 0 .and. size_in_bytes == self%n_written) return
     call raise(self%failure, err_io, 'writing failed: '//trim(reason), file=self%path)
   end subroutine close_file

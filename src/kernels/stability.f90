@@ -17,6 +17,12 @@ module mpm_stability
   real(wp), parameter :: quadratic_limit(5) = [0.707_wp, 1.032_wp, 1.145_wp, 1.189_wp, 1.209_wp]
   !> Limits of cubic B-splines for one point in a cell and for more, in 3D, rounded down.
   real(wp), parameter :: cubic_limit(2) = [1.370_wp, 1.480_wp]
+  !> The same where points lie next to walls, whose folded functions are steeper and lighter: the
+  !! least of all TYPEs, which is that around an axis.
+  real(wp), parameter :: quadratic_wall_limit(5) = [0.707_wp, 1.032_wp, 1.104_wp, 1.170_wp, &
+                                                    1.170_wp]
+  !> The same for cubic B-splines.
+  real(wp), parameter :: cubic_wall_limit(2) = [1.236_wp, 1.305_wp]
   !> One point a cell and hats: its place in the cell counts. The worst is the middle in one
   !! direction, and on node lines in the others, with mu = 1/2 or 3/4 in the first.
   real(wp), parameter :: single_point_limit(3) = [sqrt(0.5_wp), 2.0_wp/3.0_wp, sqrt(0.32_wp)]
@@ -34,23 +40,30 @@ contains
   !! functions, the worst wave of several dimensions runs along one of them. Hats averaged over a
   !! box have the same worst case when the box is no wider than a point, lambda <= 1/(2 n), and a
   !! larger limit otherwise. The limits of B-splines are computed over all waves and places, and
-  !! grow with n. Averaging over corners makes no limit smaller.
-  pure function courant_limit(stencil, per_cell) result(limit)
+  !! grow with n; those next to walls by the eigenvalues of the steps of filled boxes of 4 to 6
+  !! cells between smooth walls, in every TYPE. Averaging over corners makes no limit smaller.
+  pure function courant_limit(stencil, per_cell, at_wall) result(limit)
     !> Basis.
     type(stencil_t), intent(in) :: stencil
     !> Points along the smallest spacing, at least 1.
     real(wp), intent(in) :: per_cell
+    !> Points lie next to walls; they do not when left out.
+    logical, intent(in), optional :: at_wall
     !> The Courant number.
     real(wp) :: limit
-    logical :: kinked
+    logical :: kinked, folded
     integer :: n
 
     n = int(min(per_cell, 8.0_wp) + rounding)
+    folded = .false.
+    if (present(at_wall)) folded = at_wall
     associate (lambda => stencil%lambda(:stencil%dim))
       if (stencil%kind == basis_cubic) then
         limit = cubic_limit(min(n, 2))
+        if (folded) limit = cubic_wall_limit(min(n, 2))
       else if (stencil%kind == basis_box .and. all(lambda >= 0.5_wp)) then
         limit = quadratic_limit(min(n, 5))
+        if (folded) limit = quadratic_wall_limit(min(n, 5))
       else
         limit = 1.0_wp/sqrt(5.0_wp/3.0_wp + 1.0_wp/(3.0_wp*per_cell**2))
         kinked = .not. stencil%averaged

@@ -10,7 +10,7 @@ module mpm_point_maps
   use mpm_nodal_volume, only: nodal_volume
   use mpm_points, only: points_t
   use mpm_scatter, only: scatter
-  use mpm_stencil, only: axis_fraction, stencil_t
+  use mpm_stencil, only: axis_fraction, basis_hat, natural_width, stencil_t
   use mpm_threads, only: useful_threads
   use mpm_window, only: window_t
   implicit none
@@ -151,7 +151,7 @@ contains
   end subroutine map_mass_gradient
 
   !> Volume of the points at the nodes of a part of the grid, sum_p S_ip V_p.
-  subroutine map_volume(points, part, per_radius, node_volume)
+  subroutine map_volume(points, part, per_radius, node_volume, by_hats)
     !> The points, with lists or sorted by cell.
     class(points_t), intent(in) :: points
     !> The nodes that are asked for.
@@ -160,14 +160,26 @@ contains
     logical, intent(in) :: per_radius
     !> Volumes at the nodes of `part`. [m3] (part%size())
     real(wp), intent(out) :: node_volume(:)
+    !> Take hats at the points in place of the functions of a smoother basis; false when left out.
+    logical, intent(in), optional :: by_hats
     real(wp), allocatable :: amount(:), sums(:, :), wanted(:, :)
+    type(stencil_t) :: stencil
     integer :: n, first, last
 
-    if (.not. allocated(points%domains)) then
-      call points_near(points, part, first, last)
-      call nodal_volume(points%kin, points%stencil, part, last - first + 1, &
-                        points%order(first:last), points%x, points%extent, points%volume, &
-                        per_radius, node_volume)
+    stencil = points%stencil
+    if (present(by_hats)) then
+      if (by_hats .and. stencil%kind /= basis_hat) then
+        stencil%kind = basis_hat
+        stencil%width = natural_width(basis_hat)
+        stencil%averaged = .false.
+      end if
+    end if
+    if (.not. allocated(points%domains) .or. stencil%kind /= points%stencil%kind) then
+      first = 1
+      last = points%n_inside
+      if (.not. allocated(points%domains)) call points_near(points, part, first, last)
+      call nodal_volume(points%kin, stencil, part, last - first + 1, points%order(first:last), &
+                        points%x, points%extent, points%volume, per_radius, node_volume)
       return
     end if
     n = points%n_inside

@@ -661,8 +661,23 @@ contains
     if (through_points) then
       length = filtered_limit(per_cell, by_flip)/sqrt(sum(1.0_wp/spacing(:dim)**2))
     else
-      length = courant_limit(body%points%stencil, per_cell)*minval(spacing(:dim))
+      length = courant_limit(body%points%stencil, per_cell, touches_wall(body%points))* &
+               minval(spacing(:dim))
     end if
   end function stable_length
+
+  !> Whether stencils of points reach the nodes of a wall.
+  pure function touches_wall(points)
+    !> The points, with keys.
+    class(points_t), intent(in) :: points
+    !> Whether one does.
+    logical :: touches_wall
+
+    associate (stencil => points%stencil, dim => points%stencil%dim)
+      touches_wall = any(.not. stencil%periodic(:dim) .and. &
+                         (points%lo(:dim) == 0 .or. &
+                          points%hi(:dim) + stencil%width > stencil%n_cells(:dim)))
+    end associate
+  end function touches_wall
 
 end module mpm_explicit_steps
