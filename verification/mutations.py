@@ -105,12 +105,11 @@ MUTATIONS = (
                 "    real(wp) :: unused_v(3*block_size), unused_i(3*block_size)\n",
             ),
             (
-                "nodes%velocity, nodes%increment, velocity, increment, gradient)\n",
-                "nodes%velocity, nodes%increment, velocity, increment, gradient)\n"
-                "      call g2p(kin, stencil, nodes%window, n, points%key(a:b), &\n"
-                "               points%x(:, a:b), &\n"
-                "               points%extent(a:b), nodes%velocity - nodes%increment, &\n"
-                "               nodes%increment, unused_v, unused_i, gradient)\n",
+                "                                nodes%increment, velocity, increment, gradient)\n",
+                "                                nodes%increment, velocity, increment, gradient)\n"
+                "        call interpolate_points(points, stencil, nodes%window, a, b, &\n"
+                "                                nodes%velocity - nodes%increment, &\n"
+                "                                nodes%increment, unused_v, unused_i, gradient)\n",
             ),
         ),
     ),

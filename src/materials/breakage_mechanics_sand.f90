@@ -386,9 +386,9 @@ contains
     end do
     call writer%scalar('p', p)
     call writer%scalar('q', q)
-    call writer%scalar('phi', history(2, :))
-    call writer%scalar('B', history(1, :))
-    call writer%symmetric_tensor('Be', history(3:, :))
+    call writer%scalar('phi', (history(2, :)))
+    call writer%scalar('B', (history(1, :)))
+    call writer%symmetric_tensor('Be', (history(3:, :)))
   end subroutine breakage_mechanics_sand_write_fields
 
 end module mpm_breakage_mechanics_sand

@@ -392,7 +392,7 @@ contains
       b(:, p) = [c(1, 1), c(2, 2), c(3, 3), c(1, 2), c(2, 3), c(3, 1)]
       j(p) = determinant(f)
     end do
-    call writer%symmetric_tensor('B', b(:self%kin%nstress, :))
+    call writer%symmetric_tensor('B', (b(:self%kin%nstress, :)))
     call writer%scalar('J', j)
   end subroutine neohookean_write_fields
 

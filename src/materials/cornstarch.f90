@@ -329,7 +329,7 @@ contains
     class(field_writer_t), intent(inout) :: writer
 
     call write_flow_fields(self%law, n, mass, volume, stress, history, writer)
-    call writer%scalar('c', history(3, :))
+    call writer%scalar('c', (history(3, :)))
     call writer%scalar('phi_m', self%jammed(0) + (self%jammed(1) - self%jammed(0))*history(3, :))
   end subroutine cornstarch_write_fields
 

@@ -400,9 +400,9 @@ contains
       f = matmul(f, transpose(f))
       b(:, p) = [f(1, 1), f(2, 2), f(3, 3), f(1, 2), f(2, 3), f(3, 1)]
     end do
-    call writer%scalar('fish_label', history(self%n_f + 1, :))
+    call writer%scalar('fish_label', (history(self%n_f + 1, :)))
     call writer%scalar('muscle_stretch', stretch)
-    call writer%symmetric_tensor('B_e', b(:self%kin%nstress, :))
+    call writer%symmetric_tensor('B_e', (b(:self%kin%nstress, :)))
   end subroutine fish_write_fields
 
 end module mpm_fish

@@ -359,8 +359,8 @@ contains
 
     associate (unused => mass, unused_volume => volume, unused_stress => stress)
     end associate
-    call writer%scalar('gammap', history(1, :))
-    call writer%scalar('gammap_dot', history(2, :))
+    call writer%scalar('gammap', (history(1, :)))
+    call writer%scalar('gammap_dot', (history(2, :)))
   end subroutine sand_sachith_local_write_fields
 
 end module mpm_sand_sachith_local

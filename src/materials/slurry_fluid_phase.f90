@@ -275,7 +275,7 @@ contains
     associate (unused => mass, unused_volume => volume, unused_stress => stress)
     end associate
     call writer%scalar('J', exp(history(log_j, :)))
-    call writer%scalar('porosity', history(porosity, :))
+    call writer%scalar('porosity', (history(porosity, :)))
   end subroutine slurry_fluid_phase_write_fields
 
 end module mpm_slurry_fluid_phase

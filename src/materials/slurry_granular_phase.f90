@@ -307,8 +307,8 @@ contains
       inertial(p) = history(2, p)*law%diameter*sqrt(law%grain_density/pressure)
       viscous(p) = history(2, p)*law%viscosity/pressure
     end do
-    call writer%scalar('gammap', history(1, :))
-    call writer%scalar('gammap_dot', history(2, :))
+    call writer%scalar('gammap', (history(1, :)))
+    call writer%scalar('gammap_dot', (history(2, :)))
     call writer%scalar('I_v', viscous)
     call writer%scalar('I', inertial)
     call writer%scalar('I_m', sqrt(inertial**2 + 2.0_wp*viscous))

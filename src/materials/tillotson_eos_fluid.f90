@@ -394,7 +394,7 @@ contains
       temperature(p) = self%first_temperature &
                        + (history(1, p) - self%state%cold(mass(p)/volume(p)))/self%heat
     end do
-    call writer%scalar('Ef', history(1, :))
+    call writer%scalar('Ef', (history(1, :)))
     call writer%scalar('Tf', temperature)
   end subroutine tillotson_eos_fluid_write_fields
 
