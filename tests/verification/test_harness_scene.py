@@ -16,6 +16,7 @@ from harness.scene import (
     shear_modulus,
     stable_dt,
 )
+from harness.scheme import Scheme
 
 
 def test_moduli() -> None:
@@ -118,6 +119,16 @@ def test_mapping_and_seams_choose_the_grid() -> None:
     assert "properties = {1.0, 0.0625}" in make_scene(mapping="ugimp").grid_section()
     with pytest.raises(ValueError, match="quartic"):
         make_scene(mapping="quartic").config()
+
+
+def test_domains_go_with_boxes() -> None:
+    """They stand on linear functions; other mappings refuse them."""
+    scheme = Scheme(domains="cpgimp")
+    text = make_scene(mapping="ugimp", scheme=scheme).config()
+    assert 'class = "CartesianLinear"' in text
+    assert "point-int-props = {2}" in text
+    with pytest.raises(ValueError, match="ugimp"):
+        make_scene(mapping="cubic", scheme=scheme).config()
 
 
 def test_section_takes_properties_by_place_or_name() -> None:

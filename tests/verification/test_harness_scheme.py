@@ -43,9 +43,18 @@ def test_objective_rate_belongs_to_the_material() -> None:
     assert "hughes" not in scheme.solver_section(averaged=False, implicit=True)
 
 
+def test_domains_belong_to_the_points() -> None:
+    """They replace the points' class, and the boxes of the mapping in names."""
+    scheme = Scheme.of({"domains": "cpdi"})
+    assert scheme.label == "cpdi domains"
+    assert "point-int-props = {3}" in scheme.points_class
+    assert scheme.functions("ugimp") == "cpdi domains"
+    assert Scheme().functions("ugimp") == "ugimp"
+
+
 @pytest.mark.parametrize(
     "options",
-    [{"solver": "RK4"}, {"transfer": "GIC"}, {"smoothing": "nodes"}, {"rate": "truesdell"}],
+    [{"domains": "cpdi3"}, {"solver": "RK4"}, {"transfer": "GIC"}, {"smoothing": "nodes"}, {"rate": "truesdell"}],
 )
 def test_what_the_program_lacks_is_refused(options: dict[str, str]) -> None:
     """The message has the value that is wrong."""

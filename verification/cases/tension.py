@@ -20,6 +20,8 @@ WIDTH = {1: 1, 2: 1, 3: 1}
 
 def splits(p: Parameters) -> float:
     """Return stretch from which on neighbours can be without common node."""
+    if p.scheme.domains not in ("", "ugimp"):
+        return np.inf
     reach = {"cpdi": 1.0 + 0.25 / p.ppc, "ugimp": 1.0 + 0.5 / p.ppc, "quadratic": 1.5, "cubic": 2.0}
     return p.ppc * (2.0 * reach.get(p.mapping, 1.0) - 1.0)
 

@@ -141,8 +141,9 @@ class Body:
     #: Lines of config that replace the elastic material.
     material: str = ""
 
-    def section(self, rate: str = "jaumann") -> str:
+    def section(self, scheme: Scheme) -> str:
         """Return the section of the config."""
+        rate = scheme.rate
         law = "" if rate == "jaumann" else f'material-str-props = {{rate = "{rate}"}}'
         material = self.material or (
             'material-class = "IsotropicLinearElasticity"\n'
@@ -156,7 +157,7 @@ class Body:
     class = "DefaultBody"
     name = "{self.name}"
     point-file = "{self.name}.points"
-    point-class = "DefaultPoints"
+    {scheme.points_class}
     node-class = "DefaultNodes"
     {material}
     {boundary}
@@ -224,7 +225,7 @@ driver
 {self.scheme.solver_section(self.mapping == "cpdi", self.contact_rule == "implicit")}
 {self.grid_section()}
 """
-        bodies = [body.section(self.scheme.rate) for body in self.bodies]
+        bodies = [body.section(self.scheme) for body in self.bodies]
         return head + "".join([*bodies, *self.contacts])
 
     def grid_section(self) -> str:
@@ -232,10 +233,15 @@ driver
         if self.mapping not in GRIDS:
             raise ValueError(f'mapping "{self.mapping}" is not one of {", ".join(GRIDS)}')
         name, reals, integers = GRIDS[self.mapping], list(self.lengths), list(self.cells)
+        boxes = self.mapping == "ugimp"
+        if self.scheme.domains:
+            if not boxes:
+                raise ValueError('domains of points go with the mapping "ugimp"')
+            name, boxes = GRIDS["linear"], False
         if any(self.periodic):
             integers += map(int, self.periodic)
             name = "CartesianCustom" if name == "CartesianLinear" else f"{name}Custom"
-        if self.mapping == "ugimp":
+        if boxes:
             reals.append(0.5 * self.box * self.lengths[0] / self.cells[0])
         return f"grid\n{section(name, reals, integers)}"
 

@@ -1,4 +1,4 @@
-"""The scheme of a run: integrator, transfer and smoothing, as options of a row of the matrix.
+"""The scheme of a run: integrator, transfer, smoothing, domains of points, as options of a row.
 
 Every case runs with every scheme: the runner gives the options of this module to the scene, and a
 case looks at them only where theory says something else about a scheme.
@@ -26,13 +26,16 @@ SMOOTHING = {
     "functions": "USE_MAST_CELLS",
     "flux": "USE_ZHANG_FLUX",
 }
+#: Domains of points on linear functions, and the integer of ImprovedQuadraturePoints; they are boxes
+#: of the mapping `ugimp` that follow the deformation, but for those of the same name.
+DOMAINS = {"ugimp": 1, "cpgimp": 2, "cpdi": 3, "cpdi2": 4}
 #: Options of a row that choose the scheme.
-OPTIONS = ("solver", "transfer", "flip", "xpic", "smoothing", "staggered", "rate")
+OPTIONS = ("solver", "transfer", "flip", "xpic", "smoothing", "staggered", "rate", "domains")
 
 
 @dataclass(frozen=True)
 class Scheme:
-    """Integrator, transfer, smoothing and objective rate.
+    """Integrator, transfer, smoothing, objective rate and domains of points.
 
     Parameters
     ----------
@@ -50,6 +53,8 @@ class Scheme:
         Velocities half a step before positions from the start.
     rate : str
         Objective rate of the elastic law.
+    domains : str
+        Domains of points, one of `DOMAINS`; empty: what the grid's functions have.
     """
 
     solver: str = "USL"
@@ -59,6 +64,7 @@ class Scheme:
     smoothing: str = ""
     staggered: bool = False
     rate: str = "jaumann"
+    domains: str = ""
 
     def __post_init__(self) -> None:
         """Refuse what the program does not have."""
@@ -67,6 +73,7 @@ class Scheme:
             "transfer": (self.transfer, TRANSFERS),
             "smoothing": (self.smoothing, ["", *SMOOTHING]),
             "rate": (self.rate, ("jaumann", "hughes_winget")),
+            "domains": (self.domains, ["", *DOMAINS]),
         }
         for name, (value, values) in known.items():
             if value not in values:
@@ -87,6 +94,7 @@ class Scheme:
             smoothing=options.get("smoothing", ""),
             staggered=options.get("staggered", "no") == "yes",
             rate=options.get("rate", "jaumann"),
+            domains=options.get("domains", ""),
         )
 
     @property
@@ -98,6 +106,7 @@ class Scheme:
         elif self.flip < 1.0:
             transfer = f"{self.flip:g} FLIP"
         parts = [
+            f"{self.domains} domains" if self.domains else "",
             self.solver if self.solver != "USL" else "",
             transfer if transfer != "FLIP" else "",
             f"smoothed ({self.smoothing})" if self.smoothing else "",
@@ -112,6 +121,18 @@ class Scheme:
         if self.smoothing:
             return "ExplicitUSLwithVolumetricStrainSmoothing"
         return SOLVERS[self.solver]
+
+    def functions(self, mapping: str) -> str:
+        """Return the mapping, or the domains that replace its boxes."""
+        return f"{self.domains} domains" if self.domains else mapping
+
+    @property
+    def points_class(self) -> str:
+        """Class of the points, with its properties."""
+        if not self.domains:
+            return 'point-class = "DefaultPoints"'
+        rule = DOMAINS[self.domains]
+        return f'point-class = "ImprovedQuadraturePoints"\n    point-int-props = {{{rule}}}'
 
     def solver_section(self, averaged: bool, implicit: bool) -> str:
         """Return the section `solver` of a config."""
