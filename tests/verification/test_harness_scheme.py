@@ -54,7 +54,13 @@ def test_domains_belong_to_the_points() -> None:
 
 @pytest.mark.parametrize(
     "options",
-    [{"domains": "cpdi3"}, {"solver": "RK4"}, {"transfer": "GIC"}, {"smoothing": "nodes"}, {"rate": "truesdell"}],
+    [
+        {"domains": "cpdi3"},
+        {"solver": "RK4"},
+        {"transfer": "GIC"},
+        {"smoothing": "nodes"},
+        {"rate": "truesdell"},
+    ],
 )
 def test_what_the_program_lacks_is_refused(options: dict[str, str]) -> None:
     """The message has the value that is wrong."""

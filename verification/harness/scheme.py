@@ -26,7 +26,7 @@ SMOOTHING = {
     "functions": "USE_MAST_CELLS",
     "flux": "USE_ZHANG_FLUX",
 }
-#: Domains of points on linear functions, and the integer of ImprovedQuadraturePoints; they are boxes
+#: Domains of points on linear functions, and integers of ImprovedQuadraturePoints; they are boxes
 #: of the mapping `ugimp` that follow the deformation, but for those of the same name.
 DOMAINS = {"ugimp": 1, "cpgimp": 2, "cpdi": 3, "cpdi2": 4}
 #: Options of a row that choose the scheme.
