@@ -147,7 +147,11 @@ def main(arguments: argparse.Namespace) -> int:
     rows = time_scenes(arguments)
     record = read_record(RECORD) if RECORD.exists() else {}
     result |= {"instructions_per_point_and_step": record, "rows": rows}
-    summary = [*report.speedups(rows), *report.targets(rows, result["reference"])]
+    summary = [
+        *report.speedups(rows),
+        *report.materials(rows),
+        *report.targets(rows, result["reference"]),
+    ]
     print(*summary, sep="\n")
     if arguments.document:
         table = [version, "", report.HEADER, *map(report.line, rows), "", *summary]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from bench.scenes import SCENE
+
 Row = dict[str, Any]
 
 #: Targets per point and step at 250,000 points on one thread, on a machine whose bare kernel needs
@@ -84,6 +86,24 @@ def speedups(rows: list[Row]) -> list[str]:
         lines.append(
             f"{row['scene']:20}{row['points']:>9}: {row['threads']} threads {one / many:.2f} "
             f"times as fast as one"
+        )
+    return lines
+
+
+def materials(rows: list[Row]) -> list[str]:
+    """Time with each material over that with the elastic one, in the same motion."""
+    elastic = {key(row)[1:]: row for row in rows if row["scene"] == "3d-elastic"}
+    lines = []
+    for row in rows:
+        scene = SCENE.get(row["scene"])
+        if scene is None or not scene.sheared or key(row)[1:] not in elastic:
+            continue
+        base = elastic[key(row)[1:]]["ns_per_point_and_step"]["median"]
+        cost = row["ns_per_point_and_step"]["median"]
+        share = row["phases"].get("material", 0.0)
+        lines.append(
+            f"{row['scene']:20}{row['points']:>9}{row['threads']:>4}{cost / base:>7.2f} times the "
+            f"elastic one, material {share * cost:.1f} ns"
         )
     return lines
 

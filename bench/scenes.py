@@ -1,4 +1,4 @@
-"""The scenes of the bench suite: elastic blocks that drift across the cells of their grid."""
+"""The scenes of the bench suite: blocks that drift across the cells of their grid."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ class Scene:
 
     `bodies` is 1, or 2 for two halves that are pressed together in a contact. `cells` is the number
     of cells along each side; by default the bodies fill 0.8 of it. `material` is what the config
-    says of the material.
+    says of the material, `density` that of the block. A block that is `sheared` is compressed as
+    well, so that a granular material flows.
     """
 
     name: str
@@ -29,11 +30,19 @@ class Scene:
     bodies: int = 1
     cells: int = 0
     material: str = "material-class = IsotropicLinearElasticity  material-props = {1e6, 0.3}"
+    density: float = 1000.0
+    sheared: bool = False
 
     @property
     def classes(self) -> list[str]:
         """Classes that a program must have to run the scene."""
         return [self.grid, self.solver, self.material.split()[2]]
+
+
+def sheared(name: str, material: str, reals: str, density: float) -> Scene:
+    """Return the scene of a material in 3D."""
+    text = f"material-class = {material}  material-props = {{{reals}}}"
+    return Scene(f"3d-{name}", 3, 0, material=text, density=density, sheared=True)
 
 
 SCENES = (
@@ -61,6 +70,61 @@ SCENES = (
     Scene("3d-contact", 3, 0, bodies=2),
     Scene("3d-cpdi-contact", 3, 1, bodies=2),
     Scene("3d-sparse", 3, 0, cells=1024),
+    sheared("elastic", "IsotropicLinearElasticity", "E = 1e6, nu = 0.3", 1000.0),
+    sheared("neohookean", "CompressibleNeohookeanElasticity", "E = 1e6, nu = 0.3", 1000.0),
+    sheared("fluid", "BarotropicViscousFluid", "K = 1e6, eta = 0.1", 1000.0),
+    sheared(
+        "tillotson",
+        "TillotsonEOSFluid",
+        "rho_0 = 998, rho_IV = 958, a = 0.7, b = 0.15, A = 1e6, B = 6e6, E_0 = 7e6, alpha = 10, "
+        "beta = 5, E_IV = 4.19e5, E_CV = 2.69e6, c_v = 3690, T_0 = 293, eta_0 = 8.9e-4, "
+        "P_cav = -1e5",
+        1000.0,
+    ),
+    sheared(
+        "sand",
+        "Sand_SachithLocal",
+        "E = 1e6, nu = 0.3, d = 0.005, mu_s = 0.3819, rho_s = 2450, rho_c = 1500, mu_2 = 0.6435, "
+        "I_0 = 0.279",
+        1500.0,
+    ),
+    sheared(
+        "breakage",
+        "BreakageMechanicsSand",
+        "p_r = 1e3, K = 1200, G = 900, E_c = 3.5e4, M_0 = 1.2, gamma = 0.9, phi_l = 0.25, "
+        "phi_u = 0.5, l = 0.2, u = 0.1, theta = 0.85, rho_0 = 2650, B_0 = 0, phi_0 = 0.4",
+        1590.0,
+    ),
+    sheared(
+        "slurry-grains",
+        "SlurryGranularPhase",
+        "E = 1e6, nu = 0.3, mu_1 = 0.3819, mu_2 = 0.6435, a = 1.23, b = 0.3085, K_3 = 4.7154, "
+        "K_4 = 0, phi_m = 0.585, rho_s = 2700, eta_0 = 1e-3, d = 1e-3, rho_f = 1000",
+        1580.0,
+    ),
+    sheared(
+        "slurry-packing",
+        "SlurryGranularPhase_wUnderCompaction",
+        "E = 1e6, nu = 0.3, mu_1 = 0.3819, mu_2 = 0.6435, a = 1.23, b = 0.3085, K_3 = 0.5, "
+        "K_4 = 0, phi_m = 0.585, rho_s = 2700, eta_0 = 1e-3, d = 1e-3, rho_f = 1000, phi_c = 0.55",
+        1580.0,
+    ),
+    sheared("slurry-fluid", "SlurryFluidPhase", "K = 1e6, eta_0 = 0.1, rho_s = 2700", 1000.0),
+    sheared(
+        "cornstarch",
+        "Cornstarch",
+        "E = 1e6, nu = 0.3, mu_1 = 0.5, a_0 = 0.2, a_inf = 1, K_3 = 0.6, K_4 = 0, K_5 = 1, "
+        "K_6 = 1e-3, phi_j = 0.6, phi_c = 0.55, Delta = 0.5, tau_star = 10, alpha = 1, "
+        "rho_s = 1500, eta_0 = 1e-3, d = 1e-5, rho_f = 1000",
+        870.0,
+    ),
+    sheared(
+        "fish",
+        "Fish",
+        "E = 1e6, nu = 0.3, alpha_h = 0.02, alpha_a = 0.05, alpha_t = 0.1, beta_h = 6.28, "
+        "beta_a = 6.28, beta_t = 6.28, gamma_h = 0, gamma_a = 0.5, gamma_t = 1",
+        1000.0,
+    ),
 )
 SCENE = {scene.name: scene for scene in SCENES}
 
@@ -94,9 +158,19 @@ def write_scene(scene: Scene, folder: Path, points: int) -> Case:
     for number, (low, high) in enumerate(split(lower, upper, scene.bodies, 1.0 / cells)):
         # The upper half falls on the lower one.
         fall = [0.0] * (dim - 1) + [-0.1 * number]
-        moving = [v + w for v, w in zip(velocity, fall + [0.0] * 3, strict=False)]
+        moving: list[float | str] = [
+            v + w for v, w in zip(velocity, fall + [0.0] * 3, strict=False)
+        ]
+        if scene.sheared:
+            moving = ["0.1 + 2*(z - 0.5)", 0.2, "0.3 - 0.5*(z - 0.5)"]
         bodies.append(
-            fill(Block(low, high), sim_type, spacing=spacing, density=1000.0, velocity=moving)
+            fill(
+                Block(low, high),
+                sim_type,
+                spacing=spacing,
+                density=scene.density,
+                velocity=moving,
+            )
         )
     dt = COURANT / cells / WAVE_SPEED
     write_files(scene, folder, bodies, cells, spacing, dt)

@@ -1,5 +1,6 @@
 !> Counting sort of points by the cell (key) of their stencil.
 module mpm_sort
+  use mpm_kinds, only: lp
   use mpm_stencil, only: block_size, decode_keys, outside, stencil_t
   implicit none
   private
@@ -48,9 +49,10 @@ contains
 
   !> Order points by cell, x fastest, and find where each row of cells begins.
   !!
-  !! The sort is stable, so the order depends on the storage order alone. A row is one layer of
-  !! cells in the last direction of the grid.
-  pure subroutine sort_by_cell(stencil, n, key, lo, hi, order, row_offset)
+  !! The sort is stable, so the order depends on the storage order alone, not on the number of
+  !! threads: each thread counts and places a part of the points. A row is one layer of cells in the
+  !! last direction of the grid.
+  subroutine sort_by_cell(stencil, n, key, lo, hi, order, row_offset, threads)
     !> Basis.
     type(stencil_t), intent(in) :: stencil
     !> Number of points, all inside the grid.
@@ -65,38 +67,122 @@ contains
     integer, intent(out) :: order(n)
     !> Points in rows before each row; the last entry is n. (0:rows)
     integer, allocatable, intent(inout) :: row_offset(:)
-    integer, allocatable :: begin(:), cell(:)
-    integer :: base(3, block_size)
-    integer :: cells(3), first, nb, j, c, total, count, rows, row_size
+    !> Number of threads; 1 when left out.
+    integer, intent(in), optional :: threads
+    integer, allocatable :: begin(:, :), cell(:)
+    integer :: cells(3), parts, part, rows
 
     cells = hi - lo + 1
-    allocate (begin(0:product(cells) - 1), cell(n))
-    begin = 0
-    do first = 1, n, block_size
-      nb = min(block_size, n - first + 1)
+    parts = 1
+    ! Counts of an almost empty window would cost more than the threads gain.
+    if (present(threads)) parts = max(1, min(threads, 2*n/product(cells)))
+    allocate (begin(0:product(cells) - 1, parts), cell(n))
+    !$omp parallel do default(none) num_threads(parts) schedule(static, 1) &
+    !$omp shared(stencil, parts, n, key, lo, cells, cell, begin) private(part)
+    do part = 1, parts
+      call count_points(stencil, bound(part - 1) + 1, bound(part), key, lo, cells, cell, &
+                        begin(:, part))
+    end do
+    !$omp end parallel do
+    rows = cells(stencil%dim)
+    if (allocated(row_offset)) deallocate (row_offset)
+    allocate (row_offset(0:rows))
+    call sum_up(size(begin, 1), parts, size(begin, 1)/rows, begin, row_offset)
+    !$omp parallel do default(none) num_threads(parts) schedule(static, 1) &
+    !$omp shared(parts, n, cell, begin, order) private(part)
+    do part = 1, parts
+      call place_points(bound(part - 1) + 1, bound(part), cell, begin(:, part), order)
+    end do
+    !$omp end parallel do
+
+  contains
+
+    !> Last point of a part.
+    pure integer function bound(part)
+      !> Number of the part.
+      integer, intent(in) :: part
+
+      bound = int(int(n, lp)*part/parts)
+    end function bound
+
+  end subroutine sort_by_cell
+
+  !> Find the cells of points, and count them.
+  pure subroutine count_points(stencil, low, high, key, lo, cells, cell, number)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> First point.
+    integer, intent(in) :: low
+    !> Last point.
+    integer, intent(in) :: high
+    !> Keys. (n)
+    integer, intent(in) :: key(:)
+    !> Lower corner of the box of cells.
+    integer, intent(in) :: lo(3)
+    !> Cells of the box in each direction.
+    integer, intent(in) :: cells(3)
+    !> Cells of the points, from 0; only those of low to high are found. (n)
+    integer, intent(inout) :: cell(:)
+    !> Points in each cell. (0:cells - 1)
+    integer, intent(out) :: number(0:)
+    integer :: base(3, block_size), first, nb, j
+
+    number = 0
+    do first = low, high, block_size
+      nb = min(block_size, high - first + 1)
       call decode_keys(stencil, nb, key(first:first + nb - 1), base)
       call local_cells(nb, base, lo, cells, cell(first:first + nb - 1))
       do j = first, first + nb - 1
-        begin(cell(j)) = begin(cell(j)) + 1
+        number(cell(j)) = number(cell(j)) + 1
       end do
     end do
-    rows = cells(stencil%dim)
-    row_size = size(begin)/rows
-    if (allocated(row_offset)) deallocate (row_offset)
-    allocate (row_offset(0:rows))
+  end subroutine count_points
+
+  !> Turn numbers of points into the numbers of those before: of earlier cells, and of earlier parts.
+  pure subroutine sum_up(cells, parts, row_size, begin, row_offset)
+    !> Number of cells.
+    integer, intent(in) :: cells
+    !> Number of parts.
+    integer, intent(in) :: parts
+    !> Cells in a row.
+    integer, intent(in) :: row_size
+    !> Points of each cell and part; on exit those before. (0:cells - 1, parts)
+    integer, intent(inout) :: begin(0:cells - 1, parts)
+    !> Points before each row; the last entry is the number of points. (0:rows)
+    integer, intent(out) :: row_offset(0:)
+    integer :: c, part, count, total
+
     total = 0
-    do c = 0, size(begin) - 1
+    do c = 0, cells - 1
       if (mod(c, row_size) == 0) row_offset(c/row_size) = total
-      count = begin(c)
-      begin(c) = total
-      total = total + count
+      do part = 1, parts
+        count = begin(c, part)
+        begin(c, part) = total
+        total = total + count
+      end do
     end do
-    row_offset(rows) = total
-    do j = 1, n
+    row_offset(cells/row_size) = total
+  end subroutine sum_up
+
+  !> Put points at the places of their cells, in the order in which they are stored.
+  pure subroutine place_points(low, high, cell, begin, order)
+    !> First point.
+    integer, intent(in) :: low
+    !> Last point.
+    integer, intent(in) :: high
+    !> Cells of the points. (n)
+    integer, intent(in) :: cell(:)
+    !> Points before the next one of each cell. (0:cells - 1)
+    integer, intent(inout) :: begin(0:)
+    !> Slots in the order of cells; only the places of these points are written. (n)
+    integer, intent(inout) :: order(:)
+    integer :: j
+
+    do j = low, high
       begin(cell(j)) = begin(cell(j)) + 1
       order(begin(cell(j))) = j
     end do
-  end subroutine sort_by_cell
+  end subroutine place_points
 
   !> Cells of points counted from the lower corner of their bounding box.
   pure subroutine local_cells(n, base, lo, cells, cell)

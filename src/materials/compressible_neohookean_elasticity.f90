@@ -1,13 +1,13 @@
 !> A compressible neo-Hookean solid at finite strain.
 module mpm_compressible_neohookean_elasticity
-  use mpm_deformation, only: advance_deformation, deformation_size, determinant, &
+  use mpm_deformation, only: advance_deformations, deformation_size, determinant, &
                              expand_deformation, identity, root, store_deformation, &
                              turn_deformation
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
   use mpm_kinds, only: wp
-  use mpm_kinematics, only: expand_gradient, expand_stress, kinematics_t
+  use mpm_kinematics, only: expand_stress, kinematics_t
   use mpm_material, only: material_t
   use mpm_properties, only: properties_t
   implicit none
@@ -120,50 +120,23 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point that is turned inside out or out of all bounds; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: f(3, 3), stored(9), j, t(6)
-    integer :: p
-    logical :: good
+    real(wp) :: f(n, 3, 3), j(n), scale(n), pressure(n)
+    integer, parameter :: first(6) = [1, 2, 3, 1, 2, 3], second(6) = [1, 2, 3, 2, 3, 1]
+    integer :: c
 
     associate (unused => mass, unused_volume => volume)
     end associate
-    first_bad = 0
-    do p = 1, n
-      f = expand_deformation(self%kin, history(:, p))
-      call advance_deformation(dt, expand_gradient(self%kin, gradient(:, p)), f, j, good)
-      if (.not. good) then
-        first_bad = p
-        return
-      end if
-      stored = store_deformation(self%kin, f)
-      history(:, p) = stored(:self%n_history)
-      call cauchy_stress(self%lambda, self%shear, f, j, t)
-      stress(:, p) = t(:self%kin%nstress)
+    call advance_deformations(self%kin, n, dt, gradient, history, f, j, first_bad)
+    if (first_bad > 0) return
+    scale = self%shear/j
+    pressure = scale - self%lambda*log(j)/j
+    do c = 1, self%kin%nstress
+      associate (a => first(c), b => second(c))
+        stress(c, :) = scale*(f(:, a, 1)*f(:, b, 1) + f(:, a, 2)*f(:, b, 2) + f(:, a, 3)*f(:, b, 3))
+      end associate
+      if (c <= 3) stress(c, :) = stress(c, :) - pressure
     end do
   end subroutine neohookean_update_stress
-
-  !> Stress of a deformation gradient.
-  pure subroutine cauchy_stress(lambda, shear, f, j, t)
-    !> First Lame constant. [Pa]
-    real(wp), intent(in) :: lambda
-    !> Shear modulus. [Pa]
-    real(wp), intent(in) :: shear
-    !> Deformation gradient.
-    real(wp), intent(in) :: f(3, 3)
-    !> Its determinant.
-    real(wp), intent(in) :: j
-    !> Stress xx yy zz xy yz zx. [Pa]
-    real(wp), intent(out) :: t(6)
-
-    t(1) = dot_product(f(1, :), f(1, :))
-    t(2) = dot_product(f(2, :), f(2, :))
-    t(3) = dot_product(f(3, :), f(3, :))
-    t(4) = dot_product(f(1, :), f(2, :))
-    t(5) = dot_product(f(2, :), f(3, :))
-    t(6) = dot_product(f(3, :), f(1, :))
-    t(1:3) = t(1:3) - 1.0_wp
-    t = (shear/j)*t
-    t(1:3) = t(1:3) + lambda*log(j)/j
-  end subroutine cauchy_stress
 
   !> Give points the stretch that has a stress.
   pure subroutine neohookean_assign_stress(self, n, target, mass, volume, stress, history, &

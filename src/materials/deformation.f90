@@ -10,16 +10,35 @@
 !! exp(dt tr L) as the volume is, and a spin rotates.
 module mpm_deformation
   use mpm_kinds, only: wp
-  use mpm_kinematics, only: kinematics_t, type_1d, type_axisymmetric, type_plane_strain
+  use mpm_kinematics, only: expand_gradient, kinematics_t, type_1d, type_axisymmetric, type_plane_strain
   implicit none
   private
-  public :: advance_deformation, deformation_size, determinant, expand_deformation, exponential
-  public :: identity, inverse, largest_step, root, store_deformation, turn_deformation
+  public :: advance_deformation, advance_deformations, deformation_size, determinant
+  public :: expand_deformation, exponential, identity, inverse, largest_step, root
+  public :: store_deformation, turn_deformation
 
   !> Largest dt |L| of a step, above which a motion is no longer one of a body.
   real(wp), parameter :: largest_step = 30.0_wp
   !> Largest component of a deformation gradient, so that its powers stay numbers.
   real(wp), parameter :: largest = 1.0e30_wp
+  !> Largest sum of a column of dt |L| for which the series is used as it is.
+  real(wp), parameter :: series_reach = 1.0_wp/64.0_wp
+  !> Factors of Horner's rule.
+  real(wp), parameter :: reciprocal(8) = [1.0_wp, 1.0_wp/2.0_wp, 1.0_wp/3.0_wp, 1.0_wp/4.0_wp, &
+                                          1.0_wp/5.0_wp, 1.0_wp/6.0_wp, 1.0_wp/7.0_wp, &
+                                          1.0_wp/8.0_wp]
+  !> Rows of the stored components, by TYPE.
+  integer, parameter :: row(9, 5) = reshape([1, 2, 3, 0, 0, 0, 0, 0, 0, &
+                                             1, 1, 2, 2, 3, 0, 0, 0, 0, &
+                                             1, 1, 1, 2, 2, 2, 3, 3, 3, &
+                                             1, 1, 1, 2, 2, 2, 3, 3, 3, &
+                                             1, 1, 1, 2, 2, 2, 3, 3, 3], [9, 5])
+  !> Columns of the stored components, by TYPE.
+  integer, parameter :: column(9, 5) = reshape([1, 2, 3, 0, 0, 0, 0, 0, 0, &
+                                                1, 2, 1, 2, 3, 0, 0, 0, 0, &
+                                                1, 2, 3, 1, 2, 3, 1, 2, 3, &
+                                                1, 2, 3, 1, 2, 3, 1, 2, 3, &
+                                                1, 2, 3, 1, 2, 3, 1, 2, 3], [9, 5])
   !> Unit tensor.
   real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, &
                                                    0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
@@ -109,6 +128,153 @@ contains
     good = j > 64.0_wp*epsilon(1.0_wp)*norm2(f(1, :))*norm2(f(2, :))*norm2(f(3, :)) &
            .and. j > 1.0_wp/largest**2
   end subroutine advance_deformation
+
+  !> F <- exp(dt L) F of a block of points, and the determinants: many points at a time.
+  !!
+  !! Points of steps too long for the series are advanced one by one.
+  pure subroutine advance_deformations(kin, n, dt, gradient, stored, f, j, first_bad)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
+    !> Stored components of the deformation gradients in the first rows. (:, n)
+    real(wp), intent(inout) :: stored(:, :)
+    !> Deformation gradients of the end of the step. (n, 3, 3)
+    real(wp), intent(out) :: f(n, 3, 3)
+    !> Their determinants. (n)
+    real(wp), intent(out) :: j(n)
+    !> First point without such a deformation; 0 when there is none.
+    integer, intent(out) :: first_bad
+    real(wp) :: b(n, 3, 3), e(n, 3, 3), product(n, 3, 3), one(3, 3), size2(n)
+    logical :: small(n), good(n)
+    integer :: c, k, p
+
+    call unpack_gradients(kin, n, dt, gradient, b)
+    call unpack_deformations(kin, n, stored, f)
+    small = .true.
+    do c = 1, 3
+      small = small .and. abs(b(:, 1, c)) + abs(b(:, 2, c)) + abs(b(:, 3, c)) <= series_reach
+    end do
+    if (.not. all(small)) then
+      do c = 1, 3
+        do k = 1, 3
+          b(:, k, c) = merge(b(:, k, c), 0.0_wp, small)
+        end do
+      end do
+    end if
+    ! exp(b) - 1 by Horner's rule, as `exponential` has it.
+    e = reciprocal(8)*b
+    do k = 7, 1, -1
+      call multiply(n, b, e, product)
+      e = reciprocal(k)*(b + product)
+    end do
+    call multiply(n, e, f, product)
+    f = f + product
+    j = f(:, 1, 1)*(f(:, 2, 2)*f(:, 3, 3) - f(:, 2, 3)*f(:, 3, 2)) &
+        - f(:, 1, 2)*(f(:, 2, 1)*f(:, 3, 3) - f(:, 2, 3)*f(:, 3, 1)) &
+        + f(:, 1, 3)*(f(:, 2, 1)*f(:, 3, 2) - f(:, 2, 2)*f(:, 3, 1))
+    size2 = (f(:, 1, 1)**2 + f(:, 1, 2)**2 + f(:, 1, 3)**2) &
+            *(f(:, 2, 1)**2 + f(:, 2, 2)**2 + f(:, 2, 3)**2) &
+            *(f(:, 3, 1)**2 + f(:, 3, 2)**2 + f(:, 3, 3)**2)
+    ! As in `advance_deformation`.
+    good = maxval(maxval(abs(f), dim=3), dim=2) <= largest .and. j > 1.0_wp/largest**2 .and. &
+           j > 64.0_wp*epsilon(1.0_wp)*sqrt(size2)
+    do p = 1, n
+      if (small(p)) cycle
+      one = expand_deformation(kin, stored(:, p))
+      call advance_deformation(dt, expand_gradient(kin, gradient(:, p)), one, j(p), good(p))
+      f(p, :, :) = one
+    end do
+    first_bad = findloc(good, .false., dim=1)
+    if (first_bad > 0) return
+    call pack_deformations(kin, n, f, stored)
+  end subroutine advance_deformations
+
+  !> Full tensors dt L of a block of points.
+  pure subroutine unpack_gradients(kin, n, dt, gradient, tensor)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
+    !> dt L. (n, 3, 3)
+    real(wp), intent(out) :: tensor(n, 3, 3)
+    integer :: a, d
+
+    tensor = 0.0_wp
+    do a = 1, kin%nvel
+      do d = 1, kin%dim
+        tensor(:, a, d) = dt*gradient((a - 1)*kin%dim + d, :)
+      end do
+    end do
+    if (kin%sim_type == type_axisymmetric) then
+      tensor(:, 1, 3) = dt*gradient(7, :)
+      tensor(:, 3, 3) = dt*gradient(8, :)
+    end if
+  end subroutine unpack_gradients
+
+  !> Full tensors of the stored components of a block of points.
+  pure subroutine unpack_deformations(kin, n, stored, f)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Stored components in the first rows. (:, n)
+    real(wp), intent(in) :: stored(:, :)
+    !> Deformation gradients. (n, 3, 3)
+    real(wp), intent(out) :: f(n, 3, 3)
+    integer :: c
+
+    if (deformation_size(kin) < 9) f = 0.0_wp
+    do c = 1, deformation_size(kin)
+      f(:, row(c, kin%sim_type), column(c, kin%sim_type)) = stored(c, :)
+    end do
+  end subroutine unpack_deformations
+
+  !> Stored components of full tensors of a block of points.
+  pure subroutine pack_deformations(kin, n, f, stored)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Deformation gradients. (n, 3, 3)
+    real(wp), intent(in) :: f(n, 3, 3)
+    !> Stored components in the first rows. (:, n)
+    real(wp), intent(inout) :: stored(:, :)
+    integer :: c
+
+    do c = 1, deformation_size(kin)
+      stored(c, :) = f(:, row(c, kin%sim_type), column(c, kin%sim_type))
+    end do
+  end subroutine pack_deformations
+
+  !> Products of the tensors of a block of points.
+  pure subroutine multiply(n, a, b, c)
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Left factors. (n, 3, 3)
+    real(wp), intent(in) :: a(n, 3, 3)
+    !> Right factors. (n, 3, 3)
+    real(wp), intent(in) :: b(n, 3, 3)
+    !> Products. (n, 3, 3)
+    real(wp), intent(out) :: c(n, 3, 3)
+    integer :: i, k, p
+
+    do k = 1, 3
+      do i = 1, 3
+        do p = 1, n
+          c(p, i, k) = a(p, i, 1)*b(p, 1, k) + a(p, i, 2)*b(p, 2, k) + a(p, i, 3)*b(p, 3, k)
+        end do
+      end do
+    end do
+  end subroutine multiply
 
   !> Exponential of a tensor, by its series at a fraction 1/2**s and s squarings.
   !!

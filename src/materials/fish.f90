@@ -1,12 +1,12 @@
 !> A swimming body: an elastic solid whose muscles change their length.
 module mpm_fish
-  use mpm_deformation, only: advance_deformation, deformation_size, determinant, &
+  use mpm_deformation, only: advance_deformations, deformation_size, determinant, &
                              expand_deformation, identity, store_deformation, turn_deformation
   use mpm_description, only: description_t, types_with_dim
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
   use mpm_kinds, only: wp
-  use mpm_kinematics, only: expand_gradient, kinematics_t
+  use mpm_kinematics, only: kinematics_t
   use mpm_material, only: material_t
   use mpm_properties, only: properties_t
   use mpm_strings, only: excerpt, string_t
@@ -240,22 +240,16 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point that is turned inside out or out of all bounds; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: f(3, 3), b(3, 3), stored(9), j, growth, six(6)
+    real(wp) :: all_f(n, 3, 3), all_j(n), f(3, 3), b(3, 3), j, growth, six(6)
     integer :: p
-    logical :: good
 
     associate (unused => mass, unused_volume => volume)
     end associate
-    first_bad = 0
+    call advance_deformations(self%kin, n, dt, gradient, history, all_f, all_j, first_bad)
+    if (first_bad > 0) return
     do p = 1, n
-      f = expand_deformation(self%kin, history(:self%n_f, p))
-      call advance_deformation(dt, expand_gradient(self%kin, gradient(:, p)), f, j, good)
-      if (.not. good) then
-        first_bad = p
-        return
-      end if
-      stored = store_deformation(self%kin, f)
-      history(:self%n_f, p) = stored(:self%n_f)
+      f = all_f(p, :, :)
+      j = all_j(p)
       history(self%n_f + 2, p) = history(self%n_f + 2, p) + dt
       call elastic_part(self, history(:, p), f, growth)
       j = j/growth

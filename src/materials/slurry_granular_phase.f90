@@ -142,9 +142,7 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a stress; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: trial(n), tau(n), factor(n), pressure(n), kept
-    integer :: p
-    logical :: good
+    real(wp) :: trial(n), tau(n), factor(n), pressure(n), kept(n), phi(n), rate(n)
 
     call spin_stress(self%kin, n, dt, gradient, stress)
     call add_strain(self%kin, n, dt, self%law%bulk - 2.0_wp*self%law%shear/3.0_wp, self%law%shear, &
@@ -152,17 +150,14 @@ contains
     call invariants(self%kin%nstress, n, stress, trial, tau)
     first_bad = first_not_finite(1, n, trial + tau)
     if (first_bad > 0) return
-    do p = 1, n
-      call self%law%solve(dt, mass(p)/(volume(p)*self%law%grain_density), trial(p), tau(p), &
-                          pressure(p), kept, history(2, p), good)
-      if (.not. good) then
-        first_bad = p
-        return
-      end if
-      factor(p) = 1.0_wp
-      if (tau(p) > 0.0_wp) factor(p) = kept/tau(p)
-      history(1, p) = history(1, p) + dt*history(2, p)
-    end do
+    phi = mass/(volume*self%law%grain_density)
+    rate = history(2, :)
+    call self%law%solve_block(n, dt, phi, trial, tau, pressure, kept, rate, first_bad)
+    if (first_bad > 0) return
+    factor = 1.0_wp
+    where (tau > 0.0_wp) factor = kept/tau
+    history(2, :) = rate
+    history(1, :) = history(1, :) + dt*rate
     call rebuild(self%kin%nstress, n, trial, factor, pressure, stress)
   end subroutine slurry_granular_phase_update_stress
 

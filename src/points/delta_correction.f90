@@ -46,7 +46,7 @@ contains
     end if
     do iteration = 1, settings%max_iterations
       ! Shifts of the last iteration may have changed the order of the cells.
-      if (iteration > 1) call points%refresh_order()
+      if (iteration > 1) call points%refresh_order(threads)
       call measure_overshoot(points, grid, overshoot, threads)
       if (.not. maxval(overshoot%relative) > settings%tolerance) return
       call gradients_at(points, overshoot, overshoot%excess, threads, shift)

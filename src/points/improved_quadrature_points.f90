@@ -178,7 +178,7 @@ contains
     self%elapsed = self%elapsed + dt
     if (mod(step, int(self%settings%skip, lp)) /= 0) return
     ! Points that left the grid in this step take no part.
-    call self%refresh_order()
+    call self%refresh_order(threads)
     select case (self%settings%rule)
     case (avoid_a_void)
       call insert_and_merge(self, self%grid, self%settings, step, self%may_return)

@@ -12,6 +12,7 @@ module mpm_points
   use mpm_properties, only: properties_t
   use mpm_seam, only: widen_at_seam, wrap_points
   use mpm_sort, only: base_bounds, sort_by_cell
+  use mpm_threads, only: useful_threads
   use mpm_stencil, only: outside, stencil_keys, stencil_t
   use mpm_store, only: store_t
   use mpm_window, only: window_t
@@ -265,10 +266,12 @@ contains
   !!
   !! Only the list `order` is made anew when points changed their cell; the arrays themselves are
   !! sorted when an eighth of the points have, or when a point must go to the end.
-  subroutine points_refresh_order(self)
+  subroutine points_refresh_order(self, threads)
     !> The points.
     class(points_t), intent(inout) :: self
-    integer :: n_left, p, k, inside_now
+    !> Number of threads; 1 when left out.
+    integer, intent(in), optional :: threads
+    integer :: n_left, p, k, inside_now, team
     integer, allocatable :: order(:)
 
     if (self%n_changed == 0) return
@@ -293,47 +296,56 @@ contains
       self%n_lost = self%n_lost + n_left
     end if
     if (self%n_inside == 0) return
+    team = 1
+    if (present(threads)) team = useful_threads(threads, self%n_inside)
     call sort_by_cell(self%stencil, self%n_inside, self%key(:self%n_inside), self%lo, self%hi, &
-                      self%order(:self%n_inside), self%row_offset)
+                      self%order(:self%n_inside), self%row_offset, team)
     if (self%n_drifted < self%n_inside/8) return
     self%n_drifted = 0
     allocate (order(self%n))
     order(:self%n_inside) = self%order(:self%n_inside)
     order(self%n_inside + 1:) = [(p, p=self%n_inside + 1, self%n)]
-    call self%permute(order)
+    call self%permute(order, team)
     self%order(:self%n_inside) = [(p, p=1, self%n_inside)]
   end subroutine points_refresh_order
 
   !> Put all arrays into another order: slot i receives what was in slot order(i).
-  subroutine points_permute(self, order)
+  subroutine points_permute(self, order, threads)
     !> The points.
     class(points_t), intent(inout) :: self
     !> A permutation of the slots. (n)
     integer, intent(in) :: order(:)
+    !> Number of threads; 1 when left out.
+    integer, intent(in), optional :: threads
+    integer :: team
 
-    call permute_integers(order, self%id)
-    call permute_integers(order, self%key)
-    call permute_scalars(order, self%mass)
-    call permute_scalars(order, self%volume)
-    call permute_scalars(order, self%extent)
-    call permute_vectors(order, self%x)
-    call permute_vectors(order, self%displacement)
-    call permute_vectors(order, self%velocity)
-    call permute_vectors(order, self%stress)
-    if (size(self%history, 1) > 0) call permute_vectors(order, self%history)
-    if (allocated(self%gradient)) call permute_vectors(order, self%gradient)
-    if (allocated(self%load)) call permute_vectors(order, self%load)
-    if (allocated(self%affine)) call permute_vectors(order, self%affine)
-    if (allocated(self%reference_volume)) call permute_scalars(order, self%reference_volume)
-    if (allocated(self%smoothed_volume)) call permute_scalars(order, self%smoothed_volume)
-    if (allocated(self%shifted)) call permute_vectors(order, self%shifted)
+    team = 1
+    if (present(threads)) team = threads
+    call permute_integers(order, team, self%id)
+    call permute_integers(order, team, self%key)
+    call permute_scalars(order, team, self%mass)
+    call permute_scalars(order, team, self%volume)
+    call permute_scalars(order, team, self%extent)
+    call permute_vectors(order, team, self%x)
+    call permute_vectors(order, team, self%displacement)
+    call permute_vectors(order, team, self%velocity)
+    call permute_vectors(order, team, self%stress)
+    if (size(self%history, 1) > 0) call permute_vectors(order, team, self%history)
+    if (allocated(self%gradient)) call permute_vectors(order, team, self%gradient)
+    if (allocated(self%load)) call permute_vectors(order, team, self%load)
+    if (allocated(self%affine)) call permute_vectors(order, team, self%affine)
+    if (allocated(self%reference_volume)) call permute_scalars(order, team, self%reference_volume)
+    if (allocated(self%smoothed_volume)) call permute_scalars(order, team, self%smoothed_volume)
+    if (allocated(self%shifted)) call permute_vectors(order, team, self%shifted)
     if (allocated(self%domains)) call self%domains%permute(order)
   end subroutine points_permute
 
   !> Permute integers.
-  pure subroutine permute_integers(order, values)
+  subroutine permute_integers(order, threads, values)
     !> A permutation. (n)
     integer, intent(in) :: order(:)
+    !> Number of threads.
+    integer, intent(in) :: threads
     !> Values. (n)
     integer, allocatable, intent(inout) :: values(:)
     integer, allocatable :: copy(:)
@@ -341,15 +353,20 @@ contains
 
     call move_alloc(values, copy)
     allocate (values(size(order)))
+    !$omp parallel do default(none) num_threads(threads) schedule(static) &
+    !$omp shared(order, values, copy) private(i)
     do i = 1, size(order)
       values(i) = copy(order(i))
     end do
+    !$omp end parallel do
   end subroutine permute_integers
 
   !> Permute reals.
-  pure subroutine permute_scalars(order, values)
+  subroutine permute_scalars(order, threads, values)
     !> A permutation. (n)
     integer, intent(in) :: order(:)
+    !> Number of threads.
+    integer, intent(in) :: threads
     !> Values. (n)
     real(wp), allocatable, intent(inout) :: values(:)
     real(wp), allocatable :: copy(:)
@@ -357,15 +374,20 @@ contains
 
     call move_alloc(values, copy)
     allocate (values(size(order)))
+    !$omp parallel do default(none) num_threads(threads) schedule(static) &
+    !$omp shared(order, values, copy) private(i)
     do i = 1, size(order)
       values(i) = copy(order(i))
     end do
+    !$omp end parallel do
   end subroutine permute_scalars
 
   !> Permute columns.
-  pure subroutine permute_vectors(order, values)
+  subroutine permute_vectors(order, threads, values)
     !> A permutation. (n)
     integer, intent(in) :: order(:)
+    !> Number of threads.
+    integer, intent(in) :: threads
     !> Values. (components, n)
     real(wp), allocatable, intent(inout) :: values(:, :)
     real(wp), allocatable :: copy(:, :)
@@ -373,9 +395,12 @@ contains
 
     call move_alloc(values, copy)
     allocate (values(size(copy, 1), size(order)))
+    !$omp parallel do default(none) num_threads(threads) schedule(static) &
+    !$omp shared(order, values, copy) private(i)
     do i = 1, size(order)
       values(:, i) = copy(:, order(i))
     end do
+    !$omp end parallel do
   end subroutine permute_vectors
 
   !> Storage slot of each point of the points file.

@@ -77,7 +77,7 @@ contains
     if (present(clock)) call clock%enter(phase_nodes)
     dim = body%points%stencil%dim
     if (allocated(body%points%domains)) then
-      call body%points%refresh_order()
+      call body%points%refresh_order(threads)
       n = body%points%n_inside
       call body%points%domains%place(body%points%stencil, useful_threads(threads, n), n, &
                                      body%points%x(:, :n), window)
@@ -98,7 +98,7 @@ contains
       return
     end if
     if (present(clock)) call clock%enter(phase_sort)
-    call body%points%refresh_order()
+    call body%points%refresh_order(threads)
     if (present(clock)) call clock%enter(phase_p2g)
     n = body%points%n_inside
     if (n == 0) return

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from bench.instructions import compare_counts, read_record, write_record
-from bench.report import HEADER, comparison, document, line, speedups, targets
+from bench.report import HEADER, comparison, document, line, materials, speedups, targets
 
 
 def row(scene: str, threads: int, median: float, points: int = 250_000) -> dict:
@@ -19,6 +19,7 @@ def row(scene: str, threads: int, median: float, points: int = 250_000) -> dict:
         "bytes_per_point": 300.0,
         "stated_bytes_per_point": 172.0,
         "frames_share": 0.05,
+        "phases": {},
     }
 
 
@@ -35,6 +36,17 @@ def test_speedup_is_that_of_the_same_scene_and_size() -> None:
     assert speedups(rows) == [
         f"{'a':20}{250_000:>9}: 2 threads 2.00 times as fast as one",
     ]
+
+
+def test_materials_are_compared_with_the_elastic_one() -> None:
+    """Only in scenes of the same motion, on the same threads."""
+    rows = [row("3d-elastic", 1, 80.0), row("3d-sand", 1, 120.0), row("3d-sand", 2, 60.0)]
+    rows += [row("3d-linear", 1, 70.0)]
+    rows[1]["phases"] = {"material": 0.25}
+    assert [text.split()[:4] for text in materials(rows)[1:]] == [
+        ["3d-sand", "250000", "1", "1.50"]
+    ]
+    assert "material 30.0 ns" in materials(rows)[1]
 
 
 def test_targets_scale_with_the_kernel() -> None:
