@@ -33,6 +33,8 @@ class Slurry:
     grain: float = RHO_GRAIN
     #: Pressure of the fluid over depth times gravity.
     effective: float = 0.0
+    #: Height of the surface above the highest point of the fluid.
+    surface: float = 0.0
     grain_velocity: Sequence[float] = ()
     fluid_velocity: Sequence[float] = ()
     grid: str = "CartesianLinear"
@@ -70,7 +72,7 @@ class Slurry:
 {{
     class = "HydrostaticBody"
     name = "{name}"
-    properties = {{{numbers([self.downwards(), effective])}}}
+    properties = {{{numbers([self.downwards(), effective])}, surface = {self.surface!r}}}
     point-file = "{name}.points"
     point-class = "DefaultPoints"
     node-class = "DefaultNodes"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from frames import Frame, read_series
 from mixture import GRAVITY, RHO_FLUID, RHO_GRAIN, Slurry
-from scene import EPSILON, Run
+from scene import EPSILON, Body, Run, block, write_points
 
 #: A column of uniaxial strain, full of slurry.
 COLUMN = {
@@ -118,6 +118,48 @@ def test_grains_as_heavy_as_the_fluid_stay(mpm3d: Run, tmp_path: Path, sim_type:
     inner = sand.positions[:, 1] < 0.8
     fallen = np.abs(sand.fields["displacement"][inner, :2])
     assert float(np.max(fallen)) < 0.02 * 0.5 * GRAVITY * 0.2**2
+
+
+@pytest.mark.parametrize("name", ["SlurryContact", "SlurryContact_ReflectedBoundary"])
+def test_piston(mpm3d: Run, tmp_path: Path, name: str) -> None:
+    """A plate on a slurry rests on the pressure in its pores, which was given at the start."""
+    mixture, plate = 0.5 * (RHO_GRAIN + RHO_FLUID), 2000.0
+    body = Body("plate", block(1, [1.0], [1.2], [8], density=plate), modulus=1e6)
+    contact = f"""contact
+{{
+    class = "{name}"
+    name = "piston"
+    properties = {{0.3}}
+    str-properties = {{"plate", "sand", "water"}}
+}}
+"""
+    scene = Slurry(
+        sim_type=1,
+        lengths=[1.5],
+        cells=[30],
+        lower=[0.0],
+        upper=[1.0],
+        dt=2e-4,
+        t_stop=0.2,
+        rate=5.0,
+        bulk=1e6,
+        # The depth counts from the highest point, half a distance of points below the plate.
+        surface=0.2 * plate / mixture + 0.0125,
+        effective=mixture,
+        more=[body.section(), contact],
+    )
+    write_points(tmp_path / "plate.points", body.rows)
+    scene.run(mpm3d, tmp_path)
+    fallen = np.abs(series(tmp_path, 2, "plate")[-1].fields["displacement"][:, 0])
+    assert float(np.max(fallen)) < 0.02 * 0.5 * GRAVITY * 0.2**2
+    water = series(tmp_path, 1, "water")[-1]
+    top = water.positions[:, 0] > 0.8
+    weight = (0.2 * plate + mixture * (1.0 - water.positions[top, 0])) * GRAVITY
+    np.testing.assert_allclose(water.fields["pressure"][top], weight, rtol=0.05)
+    force = read_series(tmp_path / "frames", "fnd", 2, "plate")[-1]
+    held = force.fields["contact_force_by_sand_and_water_on_plate"][:, 0]
+    # Its weight, and its inertia in the last swing.
+    assert float(np.sum(held)) == pytest.approx(0.2 * plate * GRAVITY, rel=0.1)
 
 
 def test_threads_and_restart(mpm3d: Run, tmp_path: Path) -> None:
