@@ -170,26 +170,31 @@ MUTATIONS = (
     Mutation(
         "frictionless",
         "contact without friction",
-        "src/contacts/contact_huang.f90",
-        (("min(friction*abs(pull)/size_of_slip, 1.0_wp)*slip", "0.0_wp*friction*slip"),),
+        "src/contacts/contact_law.f90",
+        (("rub(nvel, friction*abs(pull), ", "rub(nvel, 0.0_wp*friction, "),),
     ),
     Mutation(
         "adhesion",
         "contact also holds bodies together that separate",
-        "src/contacts/contact_huang.f90",
-        (("    if (.not. pull < 0.0_wp) return\n", "    if (.not. abs(pull) > 0.0_wp) return\n"),),
+        "src/contacts/contact_law.f90",
+        (
+            (
+                "      if (.not. pull < 0.0_wp) return\n",
+                "      if (.not. abs(pull) > 0.0_wp) return\n",
+            ),
+        ),
     ),
     Mutation(
         "contact-one-sided",
         "the second body does not feel the contact",
-        "src/contacts/contact_huang.f90",
+        "src/contacts/contact_law.f90",
         (("    f2 = f2 - force\n", "    f2 = f2 - 0.0_wp*force\n"),),
     ),
     Mutation(
         "contact-half",
         "half of the contact force",
-        "src/contacts/contact_huang.f90",
-        (("/((m1 + m2)*dt)", "/((m1 + m2)*dt*2.0_wp)"),),
+        "src/contacts/contact_law.f90",
+        (("/(share*dt)", "/(share*dt*2.0_wp)"),),
     ),
     Mutation(
         "wall-rough",

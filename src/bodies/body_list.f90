@@ -6,7 +6,7 @@ module mpm_body_list
   use mpm_strings, only: excerpt, nearest_name, string_t, to_text
   implicit none
   private
-  public :: find_body
+  public :: find_body, find_partners
 
 contains
 
@@ -61,5 +61,30 @@ contains
                              'name it in str-properties; bodies of this config: '//list)
     end if
   end subroutine find_body
+
+  !> Find the bodies that materials ask for, when all bodies exist.
+  subroutine find_partners(bodies, error)
+    !> All bodies of the job.
+    type(body_slot_t), intent(inout) :: bodies(:)
+    !> There is no such body, or it is the body itself.
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i, position
+
+    do i = 1, size(bodies)
+      if (.not. allocated(bodies(i)%body%material)) cycle
+      if (.not. allocated(bodies(i)%body%material%partner%name_key)) cycle
+      associate (partner => bodies(i)%body%material%partner)
+        call find_body(bodies, partner%properties, partner%name_key, partner%id_key, position, &
+                       error)
+        if (allocated(error)) return
+        if (position == i) then
+          call partner%properties%reject(partner%name_key, 'the body "'//bodies(i)%body%name// &
+                                         '" names itself', error, 'name the other body')
+          return
+        end if
+        partner%position = position
+      end associate
+    end do
+  end subroutine find_partners
 
 end module mpm_body_list

@@ -21,9 +21,8 @@ module mpm_cartesian_box_custom
   private
   public :: cartesian_box_custom_t
 
-  !> One rule for each face, chosen by its code.
+  !> One rule for each face, chosen by its code; classes that extend it choose the codes themselves.
   type, extends(boundary_t) :: cartesian_box_custom_t
-    private
     !> The faces.
     type(box_faces_t) :: faces
     !> What each of them does. (faces%n)

@@ -2,6 +2,7 @@
 module mpm_configurator
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use mpm_bodies_reader, only: read_body
+  use mpm_body_list, only: find_partners
   use mpm_configurable, only: configurable_t
   use mpm_contact_registry, only: create_contact
   use mpm_description, only: description_t
@@ -309,6 +310,7 @@ contains
         end if
       end do
     end do
+    call find_partners(job%model%bodies, error)
   end subroutine read_all_bodies
 
   !> The contacts in the order of the config.

@@ -18,7 +18,8 @@ module mpm_cornstarch
 
   !> Grains of which a fraction c touches; c moves the packing at which they jam.
   !!
-  !! The memory of a point is its plastic shear strain, the rate of it, and c.
+  !! The memory of a point is its plastic shear strain, the rate of it, c, and the viscosity of the
+  !! fluid around it.
   type, extends(slurry_granular_phase_t) :: cornstarch_t
     !> Slope of the packing law without and with contacts.
     real(wp) :: slope(0:1) = 1.0_wp
@@ -92,10 +93,10 @@ contains
                               default=0.0_wp, lower=0.0_wp)
     call description%add_real('c_0', '-', 'fraction of contacts at the start', default=0.0_wp, &
                               lower=0.0_wp, upper=1.0_wp)
-    call description%add_string('fluid', 'body of the fluid: not available, the viscosity is eta_0 &
-                                &everywhere', default='')
-    call description%add_note('The class is for one body of grains. Drag, buoyancy and the fluid &
-                              &body wait for the contacts of mixtures.')
+    call description%add_string('fluid', 'body of the fluid: eta_0 counts at nodes that it &
+                                &reaches; without one, everywhere', default='')
+    call description%add_note('The stress is that of the grains. The contact SlurryMixture adds &
+                              &buoyancy and drag of a fluid.')
     call description%add_note('A stress within the static cone stays at any packing, as in mpm_3d &
                               &and unlike SlurryGranularPhase.')
     call description%add_note('The plastic step is one equation with one solution, found to &
@@ -110,11 +111,12 @@ contains
     type(kinematics_t), intent(in) :: kin
     !> Checked properties.
     type(properties_t), intent(in) :: properties
-    !> phi_c is not below phi_j, or a body of fluid.
+    !> phi_c is not below phi_j.
     type(error_t), allocatable, intent(out) :: error
 
     self%kin = kin
-    self%n_history = 3
+    self%n_history = 4
+    self%at_viscosity = 4
     associate (young => properties%real('E'), poisson => properties%real('nu'))
       self%law%shear = young/(2.0_wp*(1.0_wp + poisson))
       self%law%bulk = young/(3.0_wp*(1.0_wp - 2.0_wp*poisson))
@@ -143,10 +145,8 @@ contains
     if (self%jammed(1) >= self%jammed(0)) then
       call properties%reject('phi_c', 'phi_c is not below phi_j', error, 'contacts jam looser &
                              &packings')
-    else if (len(properties%string('fluid')) > 0) then
-      call properties%reject('fluid', 'a body of fluid is not available', error, 'leave it out: &
-                             &the viscosity is eta_0 everywhere')
     end if
+    call self%partner%ask(properties, 'fluid', '')
   end subroutine cornstarch_init
 
   !> Points begin with the first fraction of contacts.
@@ -161,13 +161,14 @@ contains
     real(wp), intent(in) :: mass(n)
     !> Volumes. [m3] (n)
     real(wp), intent(in) :: volume(n)
-    !> Plastic shear strain, its rate, and c. (3, n)
+    !> Plastic shear strain, its rate, c, and viscosity. (4, n)
     real(wp), intent(out) :: history(self%n_history, n)
 
     associate (unused => x, unused_mass => mass, unused_volume => volume)
     end associate
     history(1:2, :) = 0.0_wp
     history(3, :) = self%first
+    history(self%at_viscosity, :) = self%law%viscosity
   end subroutine cornstarch_start
 
   !> The law at a fraction of contacts.
@@ -202,7 +203,7 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(inout) :: stress(self%kin%nstress, n)
-    !> Plastic shear strain, its rate, and c. (3, n)
+    !> Plastic shear strain, its rate, c, and viscosity. (4, n)
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a stress; 0 when there is none.
     integer, intent(out) :: first_bad
@@ -220,6 +221,7 @@ contains
     do p = 1, n
       phi = mass(p)/(volume(p)*self%law%grain_density)
       law = law_of(self, history(3, p))
+      law%viscosity = history(self%at_viscosity, p)
       kept = tau(p)
       rate = 0.0_wp
       pressure(p) = trial(p)
@@ -283,7 +285,7 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(inout) :: stress(self%kin%nstress, n)
-    !> Plastic shear strain, its rate, and c. (3, n)
+    !> Plastic shear strain, its rate, c, and viscosity. (4, n)
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point that is too loose to carry its pressure at rest, or that is to have tension; 0
     !> when there is none.
@@ -323,12 +325,13 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(in) :: stress(self%kin%nstress, n)
-    !> Plastic shear strain, its rate, and c. (3, n)
+    !> Plastic shear strain, its rate, c, and viscosity. (4, n)
     real(wp), intent(in) :: history(self%n_history, n)
     !> Receiver of point fields.
     class(field_writer_t), intent(inout) :: writer
 
-    call write_flow_fields(self%law, n, mass, volume, stress, history, writer)
+    call write_flow_fields(self%law, n, mass, volume, stress, history, &
+                           history(self%at_viscosity, :), writer)
     call writer%scalar('c', (history(3, :)))
     call writer%scalar('phi_m', self%jammed(0) + (self%jammed(1) - self%jammed(0))*history(3, :))
   end subroutine cornstarch_write_fields

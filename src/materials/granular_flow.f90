@@ -122,14 +122,16 @@ contains
   !! The search of `solve`, in step for all points that flow, from the shear rates of the last step.
   !! Points in which a loose packing has to be searched for as well, and the few that are not found
   !! in step, are left to `solve`.
-  pure subroutine granular_flow_solve_block(self, n, dt, phi, p_trial, tau_trial, p, tau, rate, &
-                                            first_bad)
+  pure subroutine granular_flow_solve_block(self, n, dt, viscosity, phi, p_trial, tau_trial, p, &
+                                            tau, rate, first_bad)
     !> The law.
     class(granular_flow_t), intent(in) :: self
     !> Number of points.
     integer, intent(in) :: n
     !> Time step. [s]
     real(wp), intent(in) :: dt
+    !> Viscosities, in place of that of the law. [Pa s] (n)
+    real(wp), intent(in) :: viscosity(n)
     !> Packing fractions. (n)
     real(wp), intent(in) :: phi(n)
     !> Trial pressures. [Pa] (n)
@@ -145,14 +147,17 @@ contains
     !> First point without a solution; 0 when there is none.
     integer, intent(out) :: first_bad
     real(wp) :: p_found(n), tau_found(n), guess(n)
+    type(granular_flow_t) :: law
     integer :: list(n), m, i, k
     logical :: found(n), good
 
+    law = self
     m = 0
     first_bad = 0
     do i = 1, n
       if (phi(i) < self%gate .and. self%compaction > 0.0_wp) then
-        call self%solve(dt, phi(i), p_trial(i), tau_trial(i), p(i), tau(i), rate(i), good)
+        law%viscosity = viscosity(i)
+        call law%solve(dt, phi(i), p_trial(i), tau_trial(i), p(i), tau(i), rate(i), good)
         if (.not. good .and. first_bad == 0) first_bad = i
         cycle
       end if
@@ -168,8 +173,9 @@ contains
     end do
     if (m == 0) return
     guess(:m) = rate(list(:m))
-    call search_in_step(self, m, dt, phi(list(:m)), p_trial(list(:m)), tau_trial(list(:m)), &
-                        guess(:m), p_found(:m), tau_found(:m), found(:m))
+    call search_in_step(self, m, dt, viscosity(list(:m)), phi(list(:m)), &
+                        p_trial(list(:m)), tau_trial(list(:m)), guess(:m), p_found(:m), &
+                        tau_found(:m), found(:m))
     do k = 1, m
       i = list(k)
       if (found(k)) then
@@ -177,7 +183,8 @@ contains
         tau(i) = tau_found(k)
         rate(i) = guess(k)
       else
-        call self%solve(dt, phi(i), p_trial(i), tau_trial(i), p(i), tau(i), rate(i), good)
+        law%viscosity = viscosity(i)
+        call law%solve(dt, phi(i), p_trial(i), tau_trial(i), p(i), tau(i), rate(i), good)
         if (.not. good .and. first_bad == 0) first_bad = i
       end if
     end do
@@ -185,13 +192,15 @@ contains
 
   !> Search the shear rates of points in step: false position with the weights of Anderson and
   !! Bjorck.
-  pure subroutine search_in_step(law, m, dt, phi, p_trial, tau_trial, x, p, tau, found)
+  pure subroutine search_in_step(law, m, dt, eta, phi, p_trial, tau_trial, x, p, tau, found)
     !> The law.
     class(granular_flow_t), intent(in) :: law
     !> Number of points.
     integer, intent(in) :: m
     !> Time step. [s]
     real(wp), intent(in) :: dt
+    !> Viscosities. [Pa s] (m)
+    real(wp), intent(in) :: eta(m)
     !> Packing fractions. (m)
     real(wp), intent(in) :: phi(m)
     !> Trial pressures. [Pa] (m)
@@ -213,8 +222,8 @@ contains
     steep = 1.0_wp/(law%shear*dt)
     a = 0.0_wp
     b = tau_trial*steep
-    call missing_strength(law, m, dt, phi, p_trial, tau_trial, a, p, tau, fa)
-    call missing_strength(law, m, dt, phi, p_trial, tau_trial, b, p, tau, fb)
+    call missing_strength(law, m, dt, eta, phi, p_trial, tau_trial, a, p, tau, fa)
+    call missing_strength(law, m, dt, eta, phi, p_trial, tau_trial, b, p, tau, fb)
     moved = 0.0_wp
     do i = 1, m
       ! Without strength at the other end there is none left, as in `solve`.
@@ -225,7 +234,7 @@ contains
       end if
     end do
     ! Those with a guess take the steepest elastic step from it, which ends beyond the solution.
-    call missing_strength(law, m, dt, phi, p_trial, tau_trial, x, p, tau, f)
+    call missing_strength(law, m, dt, eta, phi, p_trial, tau_trial, x, p, tau, f)
     do k = 1, lockstep
       do i = 1, m
         up = f(i) > 0.0_wp
@@ -245,20 +254,23 @@ contains
         next = merge(next, 0.5_wp*(a(i) + b(i)), next > a(i) .and. next < b(i))
         x(i) = merge(x(i), next, abs(f(i)) <= tolerance*max(abs(p_trial(i)), tau_trial(i)))
       end do
-      call missing_strength(law, m, dt, phi, p_trial, tau_trial, x, p, tau, f)
+      call missing_strength(law, m, dt, eta, phi, p_trial, tau_trial, x, p, tau, f)
       found = abs(f) <= tolerance*max(abs(p_trial), tau_trial)
       if (all(found)) exit
     end do
   end subroutine search_in_step
 
   !> Shear stresses less strengths of plastic shear rates, for many points at a time.
-  pure subroutine missing_strength(law, m, dt, phi, p_trial, tau_trial, rate, p, tau, missing)
+  pure subroutine missing_strength(law, m, dt, eta, phi, p_trial, tau_trial, rate, p, tau, &
+                                   missing)
     !> The law.
     class(granular_flow_t), intent(in) :: law
     !> Number of points.
     integer, intent(in) :: m
     !> Time step. [s]
     real(wp), intent(in) :: dt
+    !> Viscosities. [Pa s] (m)
+    real(wp), intent(in) :: eta(m)
     !> Packing fractions. (m)
     real(wp), intent(in) :: phi(m)
     !> Trial pressures. [Pa] (m)
@@ -277,7 +289,7 @@ contains
     integer :: i, k
 
     do i = 1, m
-      c(i) = sqrt(law%grain_density*(law%diameter*rate(i))**2 + 2.0_wp*law%viscosity*rate(i))
+      c(i) = sqrt(law%grain_density*(law%diameter*rate(i))**2 + 2.0_wp*eta(i)*rate(i))
       push(i) = law%bulk*dt*law%dilation*rate(i)
       top(i) = max(0.0_wp, p_trial(i) + push(i)*phi(i))
       s(i) = sqrt(top(i))
@@ -306,7 +318,7 @@ contains
       value = law%friction + law%dilation*(phi(i) - law%critical*value)
       slope = (law%fast_friction - law%friction)*c(i)/merge(c(i) + law%inertial*s(i), 1.0_wp, &
                                                             c(i) > 0.0_wp)
-      next = 2.5_wp*phi(i)*rate(i)*law%viscosity/(law%slope*ac)
+      next = 2.5_wp*phi(i)*rate(i)*eta(i)/(law%slope*ac)
       value = value + merge(slope + next, 0.0_wp, c(i) > 0.0_wp)
       tau(i) = max(0.0_wp, tau_trial(i) - law%shear*dt*rate(i))
       missing(i) = tau(i) - max(0.0_wp, value*p(i))

@@ -3,8 +3,12 @@ module mpm_material
   use mpm_configurable, only: configurable_t
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
+  use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
+  use mpm_nodes, only: nodes_t
+  use mpm_partner, only: partner_t
+  use mpm_points, only: points_t
   use mpm_properties, only: properties_t
   implicit none
   private
@@ -20,6 +24,8 @@ module mpm_material
     type(kinematics_t) :: kin
     !> Numbers that a point remembers besides its stress; set by `init`.
     integer :: n_history = 0
+    !> Another body that `observe` looks at.
+    type(partner_t) :: partner
   contains
     !> Set the constants.
     procedure(init_i), deferred :: init
@@ -39,6 +45,8 @@ module mpm_material
     procedure :: turn_history => material_turn_history
     !> Largest diffusivity of momentum in a block of points.
     procedure :: diffusivity => material_diffusivity
+    !> Take from another body what the memory of the points has of it.
+    procedure :: observe => material_observe
     !> Send the fields of the memory when a frame is written.
     procedure :: write_fields => material_write_fields
   end type material_t
@@ -239,6 +247,35 @@ contains
     end associate
     diffusivity = 0.0_wp
   end function material_diffusivity
+
+  !> Take from another body what the memory of the points has of it: most laws know of none.
+  !!
+  !! Called in each step, when the nodes of all bodies have the velocities from which strain rates
+  !! will be formed, and points have not moved; only for laws that asked for a partner.
+  subroutine material_observe(self, grid, points, nodes, remapped, threads, other_points, &
+                              other_nodes)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Points of the body.
+    class(points_t), intent(inout) :: points
+    !> Their nodes.
+    class(nodes_t), intent(in) :: nodes
+    !> Strain rates will be formed from the velocities of the second mapping.
+    logical, intent(in) :: remapped
+    !> Number of threads.
+    integer, intent(in) :: threads
+    !> Points of the other body; left out while it is not active.
+    class(points_t), intent(in), optional :: other_points
+    !> Their nodes.
+    class(nodes_t), intent(in), optional :: other_nodes
+
+    associate (unused => self, unused_grid => grid, unused_points => points, &
+               unused_nodes => nodes, unused_remapped => remapped, unused_threads => threads)
+    end associate
+    if (present(other_points) .and. present(other_nodes)) return
+  end subroutine material_observe
 
   !> Send the fields of the memory when a frame is written: none.
   subroutine material_write_fields(self, n, mass, volume, stress, history, writer)

@@ -4,16 +4,21 @@ module mpm_slurry_fluid_phase
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
+  use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
   use mpm_material, only: material_t
+  use mpm_nodes, only: nodes_t
+  use mpm_points, only: points_t
+  use mpm_pore_fluid, only: observe_grains
   use mpm_properties, only: properties_t
   implicit none
   private
   public :: slurry_fluid_phase_t
 
-  !> Places in the memory of a point: ln J of the fluid itself, and the porosity.
-  integer, parameter :: log_j = 1, porosity = 2
+  !> Places in the memory of a point: ln J of the fluid itself, the porosity, and what the rate of
+  !! ln J exceeds the rate of volume of the point by [1/s].
+  integer, parameter :: log_j = 1, porosity = 2, excess = 3
 
   !> p = -K ln J, T = 2 eta_0 (1 + 5/2 (1 - n)) D' - p I, with the porosity n and J of the fluid.
   type, extends(material_t) :: slurry_fluid_phase_t
@@ -21,10 +26,13 @@ module mpm_slurry_fluid_phase
     real(wp) :: bulk = 0.0_wp
     !> Viscosity of the pure fluid. [Pa s]
     real(wp) :: viscosity = 0.0_wp
+    !> Density of the grains. [kg/m3]
+    real(wp) :: grain_density = 0.0_wp
   contains
     procedure, nopass :: describe => slurry_fluid_phase_describe
     procedure :: init => slurry_fluid_phase_init
     procedure :: start => slurry_fluid_phase_start
+    procedure :: observe => slurry_fluid_phase_observe
     procedure :: update_stress => slurry_fluid_phase_update_stress
     procedure :: assign_stress => slurry_fluid_phase_assign_stress
     procedure :: wave_speed => slurry_fluid_phase_wave_speed
@@ -56,14 +64,18 @@ contains
                               default=0.0_wp, lower=0.0_wp)
     call description%add_real('alpha', '-', 'strength of the shift of points: 0, there is none', &
                               default=0.0_wp, lower=0.0_wp)
-    call description%add_string('solid', 'body of the grains: not available, the porosity is 1', &
+    call description%add_string('solid', 'body of the grains; without one the porosity is 1', &
                                 default='')
-    call description%add_integer('solid_id', 'number of that body: not available', default=-1, &
-                                 lower=-1)
-    call description%add_note('The class is for one body of fluid without grains. The porosity, &
-                              &and the volume that grains push out of a point, wait for the &
-                              &contacts of mixtures; until then the law is that of &
-                              &BarotropicViscousFluid.')
+    call description%add_integer('solid_id', 'that body by its number, from 0, when no name is &
+                                 &given', default=-1, lower=-1)
+    call description%add_note('Without a body of grains the law is that of BarotropicViscousFluid. &
+                              &With one, the contact SlurryMixture adds buoyancy and drag, and the &
+                              &masses of the points are those of the fluid in their volume, n &
+                              &rho_f V.')
+    call description%add_note('The rate of volume comes from the velocities that strain rates are &
+                              &formed from, whichever the solver takes. Points stay where the &
+                              &motion takes them: ImprovedQuadraturePoints has rules that shift &
+                              &points, in place of h and alpha.')
     call description%add_note('A pressure that a body assigns changes J and leaves mass and &
                               &volume.')
   end subroutine slurry_fluid_phase_describe
@@ -76,22 +88,18 @@ contains
     type(kinematics_t), intent(in) :: kin
     !> Checked properties.
     type(properties_t), intent(in) :: properties
-    !> A body of grains, or a shift of points.
+    !> A shift of points.
     type(error_t), allocatable, intent(out) :: error
 
     self%kin = kin
-    self%n_history = 2
+    self%n_history = 3
     self%bulk = properties%real('K')
     self%viscosity = properties%real('eta_0')
+    self%grain_density = properties%real('rho_s')
+    call self%partner%ask(properties, 'solid', 'solid_id')
     if (properties%real('alpha') > 0.0_wp) then
       call properties%reject('alpha', 'points are not shifted', error, 'leave h and alpha out, or &
-                             &give alpha = 0')
-    else if (len(properties%string('solid')) > 0) then
-      call properties%reject('solid', 'a body of grains is not available', error, 'leave it out: &
-                             &the porosity is 1')
-    else if (properties%integer('solid_id') >= 0) then
-      call properties%reject('solid_id', 'a body of grains is not available', error, 'leave it &
-                             &out: the porosity is 1')
+                             &give alpha = 0; ImprovedQuadraturePoints shifts points')
     end if
   end subroutine slurry_fluid_phase_init
 
@@ -107,14 +115,46 @@ contains
     real(wp), intent(in) :: mass(n)
     !> Volumes. [m3] (n)
     real(wp), intent(in) :: volume(n)
-    !> ln J and porosity. (2, n)
+    !> ln J, porosity, and excess of the rate of ln J. (3, n)
     real(wp), intent(out) :: history(self%n_history, n)
 
     associate (unused => x, unused_mass => mass, unused_volume => volume)
     end associate
     history(log_j, :) = 0.0_wp
     history(porosity, :) = 1.0_wp
+    history(excess, :) = 0.0_wp
   end subroutine slurry_fluid_phase_start
+
+  !> Take porosity and rate of volume from the grains.
+  subroutine slurry_fluid_phase_observe(self, grid, points, nodes, remapped, threads, &
+                                        other_points, other_nodes)
+    !> The material.
+    class(slurry_fluid_phase_t), intent(in) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Points of the fluid.
+    class(points_t), intent(inout) :: points
+    !> Their nodes.
+    class(nodes_t), intent(in) :: nodes
+    !> Strain rates will be formed from the velocities of the second mapping.
+    logical, intent(in) :: remapped
+    !> Number of threads.
+    integer, intent(in) :: threads
+    !> Points of the grains; left out while these are not active.
+    class(points_t), intent(in), optional :: other_points
+    !> Their nodes.
+    class(nodes_t), intent(in), optional :: other_nodes
+    real(wp), allocatable :: n(:), rate(:)
+
+    allocate (n(points%n_inside), source=1.0_wp)
+    allocate (rate(points%n_inside), source=0.0_wp)
+    if (present(other_points) .and. present(other_nodes)) then
+      call observe_grains(grid, self%grain_density, points, nodes, other_points, other_nodes, &
+                          remapped, threads, n, rate)
+    end if
+    points%history(porosity, :points%n_inside) = n
+    points%history(excess, :points%n_inside) = rate
+  end subroutine slurry_fluid_phase_observe
 
   !> The stress of a block of points at the end of a step.
   pure subroutine slurry_fluid_phase_update_stress(self, n, dt, gradient, mass, volume, stress, &
@@ -133,7 +173,7 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(inout) :: stress(self%kin%nstress, n)
-    !> ln J and porosity. (2, n)
+    !> ln J, porosity, and excess of the rate of ln J. (3, n)
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point whose stress is not finite; 0 when there is none.
     integer, intent(out) :: first_bad
@@ -145,7 +185,7 @@ contains
     call strain_rates(self%kin, n, 2.0_wp*self%viscosity, gradient, stress, trace)
     do p = 1, n
       eta = 1.0_wp + 2.5_wp*(1.0_wp - history(porosity, p))
-      history(log_j, p) = history(log_j, p) + dt*trace(p)
+      history(log_j, p) = history(log_j, p) + dt*(trace(p) + history(excess, p))
       stress(:, p) = eta*stress(:, p)
       stress(1:3, p) = stress(1:3, p) + self%bulk*history(log_j, p) &
                        - (2.0_wp*eta*self%viscosity/3.0_wp)*trace(p)
@@ -168,7 +208,7 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(inout) :: stress(self%kin%nstress, n)
-    !> ln J and porosity. (2, n)
+    !> ln J, porosity, and excess of the rate of ln J. (3, n)
     real(wp), intent(inout) :: history(self%n_history, n)
     !> Always 0.
     integer, intent(out) :: first_bad
@@ -186,7 +226,10 @@ contains
     end do
   end subroutine slurry_fluid_phase_assign_stress
 
-  !> Largest sqrt(K/(n rho)): locked grains leave the fluid the share n of the volume.
+  !> Largest sqrt(K n V/m + K (1 - n)/(n rho_s)), that of waves in fluid and free grains.
+  !!
+  !! With rho_f = m/(n V), n rho_f a_f = -n grad p and rho_s a_s = -grad p give c**2 = K/n (n/rho_f
+  !! + (1 - n)/rho_s). Drag makes waves slower: locked grains, K/n over the density of the mixture.
   pure function slurry_fluid_phase_wave_speed(self, n, mass, volume, stress, history) result(speed)
     !> The material.
     class(slurry_fluid_phase_t), intent(in) :: self
@@ -198,15 +241,22 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(in) :: stress(self%kin%nstress, n)
-    !> ln J and porosity. (2, n)
+    !> ln J, porosity, and excess of the rate of ln J. (3, n)
     real(wp), intent(in) :: history(self%n_history, n)
     !> Largest speed of sound. [m/s]
     real(wp) :: speed
+    integer :: p
 
     associate (unused => stress)
     end associate
     speed = 0.0_wp
-    if (n > 0) speed = sqrt(self%bulk*maxval(volume/(mass*history(porosity, :))))
+    do p = 1, n
+      associate (share => history(porosity, p))
+        speed = max(speed, share*volume(p)/mass(p) &
+                    + (1.0_wp - share)/(share*self%grain_density))
+      end associate
+    end do
+    speed = sqrt(self%bulk*speed)
   end function slurry_fluid_phase_wave_speed
 
   !> Largest 4 eta/(3 rho), with the viscosity of the densest suspension.
@@ -239,7 +289,7 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(in) :: stress(self%kin%nstress, n)
-    !> ln J and porosity. (2, n)
+    !> ln J, porosity, and excess of the rate of ln J. (3, n)
     real(wp), intent(in) :: history(self%n_history, n)
     !> Sum over the points. [J]
     real(wp) :: energy
@@ -267,7 +317,7 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(in) :: stress(self%kin%nstress, n)
-    !> ln J and porosity. (2, n)
+    !> ln J, porosity, and excess of the rate of ln J. (3, n)
     real(wp), intent(in) :: history(self%n_history, n)
     !> Receiver of point fields.
     class(field_writer_t), intent(inout) :: writer

@@ -6,23 +6,34 @@ module mpm_slurry_granular_phase
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
   use mpm_granular_flow, only: granular_flow_t
+  use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
   use mpm_material, only: material_t
+  use mpm_nodes, only: nodes_t
+  use mpm_points, only: points_t
+  use mpm_pore_fluid, only: points_of_nodes
   use mpm_properties, only: properties_t
+  use mpm_seam, only: copy_to_ghosts
+  use mpm_window, only: intersect, window_t
   implicit none
   private
   public :: add_slurry_properties, slurry_granular_phase_t, write_flow_fields
 
   !> Grains with mu(I_m) friction that dilate and compact as they flow.
   !!
-  !! The memory of a point is its plastic shear strain and the rate of it.
+  !! The memory of a point is its plastic shear strain, the rate of it, and the viscosity of the
+  !! fluid around it.
   type, extends(material_t) :: slurry_granular_phase_t
     !> The law of flow.
     type(granular_flow_t) :: law
+    !> Place of the viscosity in the memory of a point, the last one. [Pa s]
+    integer :: at_viscosity = 3
   contains
     procedure, nopass :: describe => slurry_granular_phase_describe
     procedure :: init => slurry_granular_phase_init
+    procedure :: start => slurry_granular_phase_start
+    procedure :: observe => slurry_granular_phase_observe
     procedure :: update_stress => slurry_granular_phase_update_stress
     procedure :: assign_stress => slurry_granular_phase_assign_stress
     procedure :: wave_speed => slurry_granular_phase_wave_speed
@@ -73,10 +84,10 @@ contains
     call description%add_real('eta_0', 'Pa s', 'viscosity of the fluid; 0, dry', lower=0.0_wp)
     call description%add_real('d', 'm', 'diameter of the grains', above=0.0_wp)
     call description%add_real('rho_f', 'kg/m3', 'density of the fluid; not used', lower=0.0_wp)
-    call description%add_string('fluid', 'body of the fluid: not available, the viscosity is eta_0 &
-                                &everywhere', default='')
-    call description%add_note('The class is for one body of grains. Drag, buoyancy and the fluid &
-                              &body wait for the contacts of mixtures.')
+    call description%add_string('fluid', 'body of the fluid: eta_0 counts at nodes that it &
+                                &reaches; without one, everywhere', default='')
+    call description%add_note('The stress is that of the grains. The contact SlurryMixture adds &
+                              &buoyancy and drag of a fluid.')
     call description%add_note('The plastic step is one equation with one solution, found to &
                               &round-off; a search that fails ends the run. mpm_3d goes through &
                               &six stages and deletes the pressure where the shear stress is 0.')
@@ -92,11 +103,11 @@ contains
     type(kinematics_t), intent(in) :: kin
     !> Checked properties.
     type(properties_t), intent(in) :: properties
-    !> A body of fluid, or friction that falls with the rate.
+    !> Friction that falls with the rate.
     type(error_t), allocatable, intent(out) :: error
 
     self%kin = kin
-    self%n_history = 2
+    self%n_history = 3
     associate (young => properties%real('E'), poisson => properties%real('nu'))
       self%law%shear = young/(2.0_wp*(1.0_wp + poisson))
       self%law%bulk = young/(3.0_wp*(1.0_wp - 2.0_wp*poisson))
@@ -115,11 +126,91 @@ contains
     if (self%law%fast_friction < self%law%friction) then
       call properties%reject('mu_2', 'mu_2 is below mu_1', error, 'friction must not fall with the &
                              &rate')
-    else if (len(properties%string('fluid')) > 0) then
-      call properties%reject('fluid', 'a body of fluid is not available', error, 'leave it out: &
-                             &the viscosity is eta_0 everywhere')
     end if
+    call self%partner%ask(properties, 'fluid', '')
   end subroutine slurry_granular_phase_init
+
+  !> Points begin at rest, with the fluid around them.
+  pure subroutine slurry_granular_phase_start(self, n, x, mass, volume, history)
+    !> The material.
+    class(slurry_granular_phase_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(self%kin%dim, n)
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Plastic shear strain, its rate, viscosity. [-, 1/s, Pa s] (3, n)
+    real(wp), intent(out) :: history(self%n_history, n)
+
+    associate (unused => x, unused_mass => mass, unused_volume => volume)
+    end associate
+    history = 0.0_wp
+    history(self%at_viscosity, :) = self%law%viscosity
+  end subroutine slurry_granular_phase_start
+
+  !> Find the viscosity around the points: eta_0 where there is fluid, 0 elsewhere.
+  subroutine slurry_granular_phase_observe(self, grid, points, nodes, remapped, threads, &
+                                           other_points, other_nodes)
+    !> The material.
+    class(slurry_granular_phase_t), intent(in) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Points of the grains.
+    class(points_t), intent(inout) :: points
+    !> Their nodes.
+    class(nodes_t), intent(in) :: nodes
+    !> Strain rates will be formed from the velocities of the second mapping.
+    logical, intent(in) :: remapped
+    !> Number of threads.
+    integer, intent(in) :: threads
+    !> Points of the fluid; left out while it is not active.
+    class(points_t), intent(in), optional :: other_points
+    !> Their nodes.
+    class(nodes_t), intent(in), optional :: other_nodes
+    real(wp), allocatable :: wet(:, :), unused_rate(:), share(:)
+    integer :: n
+
+    associate (unused => grid, unused_flag => remapped)
+    end associate
+    n = points%n_inside
+    allocate (share(n), unused_rate(n), source=0.0_wp)
+    if (present(other_points) .and. present(other_nodes)) then
+      allocate (wet(points%kin%nvel, nodes%window%size()), source=0.0_wp)
+      if (other_points%n_inside > 0) call mark_wet(nodes%window, other_nodes, wet)
+      if (any(points%stencil%periodic)) then
+        call copy_to_ghosts(points%stencil, nodes%window, points%kin%nvel, wet)
+      end if
+      call points_of_nodes(points, nodes%window, threads, wet, wet, unused_rate, share)
+    end if
+    points%history(self%at_viscosity, :n) = self%law%viscosity*share
+  end subroutine slurry_granular_phase_observe
+
+  !> Set nodes that the fluid reaches to 1.
+  pure subroutine mark_wet(window, fluid, wet)
+    !> Window of the marks.
+    type(window_t), intent(in) :: window
+    !> Nodes of the fluid.
+    class(nodes_t), intent(in) :: fluid
+    !> The marks, in the first component. (nvel, nn)
+    real(wp), intent(inout) :: wet(:, :)
+    type(window_t) :: both
+    integer :: i, j, k, node(3), hi(3)
+
+    both = intersect(window, fluid%window)
+    hi = both%hi()
+    do k = both%lo(3), hi(3)
+      do j = both%lo(2), hi(2)
+        do i = both%lo(1), hi(1)
+          node = [i, j, k]
+          if (.not. fluid%mass(fluid%window%index(node)) > 0.0_wp) cycle
+          wet(1, window%index(node)) = 1.0_wp
+        end do
+      end do
+    end do
+  end subroutine mark_wet
 
   !> Advance the stress of a block of points over one step.
   pure subroutine slurry_granular_phase_update_stress(self, n, dt, gradient, mass, volume, stress, &
@@ -138,7 +229,7 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(inout) :: stress(self%kin%nstress, n)
-    !> Plastic shear strain and its rate. [-, 1/s] (2, n)
+    !> Plastic shear strain, its rate, viscosity. [-, 1/s, Pa s] (3, n)
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a stress; 0 when there is none.
     integer, intent(out) :: first_bad
@@ -152,7 +243,8 @@ contains
     if (first_bad > 0) return
     phi = mass/(volume*self%law%grain_density)
     rate = history(2, :)
-    call self%law%solve_block(n, dt, phi, trial, tau, pressure, kept, rate, first_bad)
+    call self%law%solve_block(n, dt, history(self%at_viscosity, :), phi, trial, tau, pressure, &
+                              kept, rate, first_bad)
     if (first_bad > 0) return
     factor = 1.0_wp
     where (tau > 0.0_wp) factor = kept/tau
@@ -176,7 +268,7 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(inout) :: stress(self%kin%nstress, n)
-    !> Plastic shear strain and its rate. [-, 1/s] (2, n)
+    !> Plastic shear strain, its rate, viscosity. [-, 1/s, Pa s] (3, n)
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point that is too loose to carry its pressure at rest, or that is to have tension; 0
     !> when there is none.
@@ -215,7 +307,7 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(in) :: stress(self%kin%nstress, n)
-    !> Plastic shear strain and its rate. [-, 1/s] (2, n)
+    !> Plastic shear strain, its rate, viscosity. [-, 1/s, Pa s] (3, n)
     real(wp), intent(in) :: history(self%n_history, n)
     !> Largest speed of a longitudinal wave. [m/s]
     real(wp) :: speed
@@ -244,7 +336,7 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(in) :: stress(self%kin%nstress, n)
-    !> Plastic shear strain and its rate. [-, 1/s] (2, n)
+    !> Plastic shear strain, its rate, viscosity. [-, 1/s, Pa s] (3, n)
     real(wp), intent(in) :: history(self%n_history, n)
     !> Sum over the points. [J]
     real(wp) :: energy
@@ -267,16 +359,17 @@ contains
     real(wp), intent(in) :: volume(n)
     !> Cauchy stresses. [Pa] (nstress, n)
     real(wp), intent(in) :: stress(self%kin%nstress, n)
-    !> Plastic shear strain and its rate. [-, 1/s] (2, n)
+    !> Plastic shear strain, its rate, viscosity. [-, 1/s, Pa s] (3, n)
     real(wp), intent(in) :: history(self%n_history, n)
     !> Receiver of point fields.
     class(field_writer_t), intent(inout) :: writer
 
-    call write_flow_fields(self%law, n, mass, volume, stress, history, writer)
+    call write_flow_fields(self%law, n, mass, volume, stress, history, &
+                           history(self%at_viscosity, :), writer)
   end subroutine slurry_granular_phase_write_fields
 
   !> Send the fields of a flow; inertial numbers are 0 where there is no pressure.
-  subroutine write_flow_fields(law, n, mass, volume, stress, history, writer)
+  subroutine write_flow_fields(law, n, mass, volume, stress, history, viscosity, writer)
     !> The law.
     type(granular_flow_t), intent(in) :: law
     !> Number of points.
@@ -289,6 +382,8 @@ contains
     real(wp), intent(in) :: stress(:, :)
     !> Plastic shear strain and its rate, and more. [-, 1/s] (n_history, n)
     real(wp), intent(in) :: history(:, :)
+    !> Viscosities of the fluid around. [Pa s] (n)
+    real(wp), intent(in) :: viscosity(:)
     !> Receiver of point fields.
     class(field_writer_t), intent(inout) :: writer
     real(wp) :: inertial(n), viscous(n), pressure
@@ -300,7 +395,7 @@ contains
       pressure = -(stress(1, p) + stress(2, p) + stress(3, p))/3.0_wp
       if (.not. pressure > 0.0_wp) cycle
       inertial(p) = history(2, p)*law%diameter*sqrt(law%grain_density/pressure)
-      viscous(p) = history(2, p)*law%viscosity/pressure
+      viscous(p) = history(2, p)*viscosity(p)/pressure
     end do
     call writer%scalar('gammap', (history(1, :)))
     call writer%scalar('gammap_dot', (history(2, :)))
@@ -308,6 +403,7 @@ contains
     call writer%scalar('I', inertial)
     call writer%scalar('I_m', sqrt(inertial**2 + 2.0_wp*viscous))
     call writer%scalar('packing_fraction', mass/(volume*law%grain_density))
+    call writer%scalar('eta_interp', (viscosity))
   end subroutine write_flow_fields
 
 end module mpm_slurry_granular_phase

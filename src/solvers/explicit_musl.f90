@@ -72,6 +72,7 @@ contains
         end if
       end associate
     end do
+    call self%observe(model, .true.)
     do i = 1, size(model%bodies)
       if (.not. model%bodies(i)%body%active) cycle
       call update_points(model, i, dt, keep_gradient, error, &

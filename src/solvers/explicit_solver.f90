@@ -42,6 +42,8 @@ module mpm_explicit_solver
     procedure :: map => explicit_solver_map
     !> Add the forces of contacts and walls, and update all nodes.
     procedure :: push => explicit_solver_push
+    !> Let materials take what they know of other bodies.
+    procedure :: observe => explicit_solver_observe
     !> Let the points of all bodies correct their positions.
     procedure, nopass :: correct => explicit_solver_correct
   end type explicit_solver_t
@@ -134,6 +136,7 @@ contains
     do i = 1, size(model%bodies)
       if (model%bodies(i)%body%active) model%bodies(i)%body%nodes%increment = 0.0_wp
     end do
+    call self%observe(model, .false.)
   end subroutine explicit_solver_start
 
   !> Ask for the marks of contacts, if there are contacts.
@@ -207,6 +210,34 @@ contains
       end associate
     end do
   end subroutine explicit_solver_push
+
+  !> Let materials take what they know of other bodies, before strain rates are formed.
+  subroutine explicit_solver_observe(self, model, remapped)
+    !> The solver.
+    class(explicit_solver_t), intent(inout) :: self
+    !> The model; its nodes have the velocities for the strain rates, its points have not moved.
+    type(model_t), intent(inout) :: model
+    !> These velocities are those of the second mapping.
+    logical, intent(in) :: remapped
+    integer :: i, other
+
+    associate (unused => self)
+    end associate
+    do i = 1, size(model%bodies)
+      associate (body => model%bodies(i)%body)
+        if (.not. (body%active .and. allocated(body%material))) cycle
+        other = body%material%partner%position
+        if (other == 0) cycle
+        if (model%bodies(other)%body%active) then
+          call body%material%observe(model%grid, body%points, body%nodes, remapped, &
+                                     model%threads, model%bodies(other)%body%points, &
+                                     model%bodies(other)%body%nodes)
+        else
+          call body%material%observe(model%grid, body%points, body%nodes, remapped, model%threads)
+        end if
+      end associate
+    end do
+  end subroutine explicit_solver_observe
 
   !> Save the marks of contacts, which the next step may use.
   !!

@@ -67,6 +67,10 @@ contains
             call body%boundary%prescribe(body%nodes%window, .false., body%nodes%velocity)
           end if
         end associate
+      end do
+      call self%observe(model, .false.)
+      do i = 1, size(model%bodies)
+        if (.not. model%bodies(i)%body%active) cycle
         call update_points(model, i, dt, keep_gradient, error, &
                          sweep=sweep_t(kick=.false., drift=.false.))
         if (allocated(error)) return

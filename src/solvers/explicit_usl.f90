@@ -58,6 +58,7 @@ contains
     call self%map(model, error)
     if (allocated(error)) return
     call self%push(model, dt)
+    call self%observe(model, .false.)
     do i = 1, size(model%bodies)
       if (.not. model%bodies(i)%body%active) cycle
       call self%advance_body(model, i, dt, keep_gradient, error)

@@ -91,7 +91,12 @@ def test_list(mpm3d: Run, tmp_path: Path) -> None:
         "part": {"Ball", "Box", "SandPile", "SineWave"},
         "nodes": {"DefaultNodes"},
         "material": {"IsotropicLinearElasticity"},
-        "boundary": {"CartesianBox", "CartesianSmoothBox", "CartesianBoxCustom"},
+        "boundary": {
+            "CartesianBox",
+            "CartesianSmoothBox",
+            "CartesianFrictionalBox",
+            "CartesianBoxCustom",
+        },
         "contact": {"ContactHuang"},
     }
     for role, names in expected.items():
