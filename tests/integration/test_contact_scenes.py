@@ -132,3 +132,42 @@ def test_linked_bars_swap_their_velocity(mpm3d: Run, tmp_path: Path, flags: str)
     # The joint and the fronts are a cell or two wide: 2 h/L = 5 %, met four times.
     np.testing.assert_allclose(means[0], triangle, atol=0.1)
     np.testing.assert_allclose(means.sum(axis=0), 1.0, atol=1e-9)
+
+
+def test_mirrored_impact(mpm3d: Run, tmp_path: Path) -> None:
+    """Half a disc on half a block move as the right half of the whole."""
+    folder, _ = run_config(mpm3d, "mirrored_impact", tmp_path)
+    scene = tmp_path / "configs" / "mirrored_impact"
+    centre = 0.6
+    for name, old, new in (
+        ("mirrored_impact.cfg", "{0.6, 0.8}", "{1.2, 0.8}"),
+        ("mirrored_impact.cfg", "{24, 32}", "{48, 32}"),
+        ("mirrored_impact.cfg", "output/mirrored_impact", "output/whole"),
+        ("disc.parts", "{0.6, 0.8}", "{1.2, 0.8}"),
+        ("disc.parts", "{24, 32}", "{48, 32}"),
+        ("disc.parts", "{0, 0.45, 0.2}", "{0.6, 0.45, 0.2}"),
+        ("block.parts", "{0.6, 0.8}", "{1.2, 0.8}"),
+        ("block.parts", "{24, 32}", "{48, 32}"),
+        ("block.parts", "{0, 0, 0.35, 0.2}", "{0.25, 0, 0.95, 0.2}"),
+    ):
+        before = (scene / name).read_text()
+        assert old in before
+        (scene / name).write_text(before.replace(old, new))
+    assert mpm3d("-c", scene / "mirrored_impact.cfg", cwd=tmp_path).returncode == 0
+    for number, body in enumerate(["disc", "block"]):
+        half = read_series(folder, "fpd", number, body)
+        whole = read_series(tmp_path / "output" / "whole", "fpd", number, body)
+        right = whole[0].positions[:, 0] > centre
+        assert right.sum() == len(half[0].positions)
+        here, there = order(half[0].positions), order(whole[0].positions[right] - [centre, 0, 0])
+        for one, all_of_it in zip(half, whole, strict=True):
+            moved = all_of_it.positions[right][there] - [centre, 0.0, 0.0]
+            # Ten digits in a frame; rounding errors of 2,000 steps with cells crossed.
+            np.testing.assert_allclose(one.positions[here], moved, rtol=0.0, atol=1e-9)
+        # It was worth the comparison.
+        assert np.abs(mean(half[-1]) - mean(half[0]))[1] > 0.3
+
+
+def order(x: Array) -> Array:
+    """Return the order of points by their places."""
+    return np.lexsort(np.round(x, 6).T)
