@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from frames import Frame, read_series
+from frames import Frame, read_frame, read_series
 from project_scene import run_config
 from scene import EPSILON, Array, Body, Run, Scene, block, run_scene
 
@@ -171,3 +171,44 @@ def test_mirrored_impact(mpm3d: Run, tmp_path: Path) -> None:
 def order(x: Array) -> Array:
     """Return the order of points by their places."""
     return np.lexsort(np.round(x, 6).T)
+
+
+def test_pushed_block(mpm3d: Run, tmp_path: Path) -> None:
+    """The plate goes on as told, the block with it, and the force is that of friction."""
+    folder, _ = run_config(
+        mpm3d,
+        "pushed_block",
+        tmp_path,
+        *("--set", "job.dt=5e-4", "--set", "serializer.properties={1000}"),
+        *("--set", "driver.properties={0.5}"),
+    )
+    speed, friction, weight, h = 0.2, 0.3, 60.0 * GRAVITY, 0.05
+    plates = read_every(folder, "fpd.0.plate", 50)
+    blocks = read_every(folder, "fpd.1.block", 50)
+    assert len(plates) == len(blocks) == 11
+    for frame in plates:
+        np.testing.assert_allclose(frame.fields["velocity"], [[speed, 0, 0]] * 56, atol=1e-10)
+        np.testing.assert_allclose(
+            frame.positions - plates[0].positions, [[speed * frame.time, 0, 0]] * 56, atol=1e-10
+        )
+    # The half widths of both are 0.2 m; contact begins up to a cell before they touch, and the
+    # block slides at most (0.2 m/s)^2/(2 mu g) ahead when it is hit.
+    late = range(2, 11)
+    for i in late:
+        gap = mean(blocks[i], "position")[0] - mean(plates[i], "position")[0]
+        assert 0.2 < gap < 0.2 + h + speed**2 / (2.0 * friction * GRAVITY)
+    # Momentum of the block: plate less floor. Every other step is seen, and pushes last a wave's
+    # way through the block and back, 2 * 0.3 m/c or 16 frames.
+    nodes = read_every(folder, "fnd.0.plate", 1)[101:]
+    time = blocks[-1].time - blocks[2].time
+    assert len(nodes) == round(1000 * time)
+    change = 60.0 * (mean(blocks[-1]) - mean(blocks[2]))
+    force = -np.mean([node.fields["contact_force_by_block_on_plate"][:, 0].sum() for node in nodes])
+    assert force == pytest.approx(
+        (change[0] + friction * (weight * time + change[1])) / time, rel=1.0 / 16.0
+    )
+
+
+def read_every(folder: Path, name: str, n: int) -> list[Frame]:
+    """Read every n-th frame of a body."""
+    return [read_frame(path) for path in sorted(folder.glob(f"{name}.*.vtk"))[::n]]
