@@ -226,6 +226,12 @@ contains
         call monitor%frame(model, serializer%frames)
         call model%clock%enter(phase_other)
       end if
+      if (serializer%history%is_on()) then
+        call model%clock%enter(phase_output)
+        call serializer%history%advance(model, error)
+        if (allocated(error)) exit
+        call model%clock%enter(phase_other)
+      end if
       call monitor%progress(model, self%t_stop, serializer%frames)
       if (.not. present(keeper)) cycle
       call keeper%look(model, self, solver, serializer, monitor, .false., error)

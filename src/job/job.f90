@@ -75,6 +75,8 @@ contains
     if (allocated(self%checkpoints%text)) self%serializer%config_text = self%checkpoints%text
     call self%serializer%open(self%model, error)
     if (allocated(error)) return
+    call self%serializer%history%open(self%model, error)
+    if (allocated(error)) return
     call self%checkpoints%begin(self%model, self%serializer, error)
     if (allocated(error)) return
     do i = 1, size(self%model%bodies)

@@ -3,13 +3,13 @@ module mpm_vtk_frames
   use mpm_body, only: body_t
   use mpm_description, only: description_t
   use mpm_errors, only: err_input, error_t, raise
+  use mpm_exact_number, only: exact_text
   use mpm_field_writer, only: field_writer_t
   use mpm_file_system, only: delete_leftovers
   use mpm_files, only: delete_file, join_path, make_directories
   use mpm_kinds, only: lp, wp
   use mpm_memory, only: available_memory
   use mpm_model, only: model_t
-  use mpm_number_parser, only: parse_real
   use mpm_number_text, only: default_digits
   use mpm_properties, only: properties_t
   use mpm_serializer, only: add_save_properties, serializer_t
@@ -379,22 +379,6 @@ contains
 
     when = 'frame '//to_text(frame)//', t = '//to_text(time)//' s'
   end function when
-
-  !> A real with as many digits as it takes to read the same number back.
-  pure function exact_text(number) result(text)
-    !> The number.
-    real(wp), intent(in) :: number
-    !> At most 17 significant digits.
-    character(:), allocatable :: text
-    real(wp) :: back
-    integer :: digits, status
-
-    do digits = 15, 17
-      text = to_text(number, digits)
-      call parse_real(text, 1_lp, len(text, lp), back, status)
-      if (.not. abs(back - number) > 0.0_wp) return
-    end do
-  end function exact_text
 
   !> A name for the title line: without line ends, not too long.
   pure function one_line(text) result(line)

@@ -121,8 +121,10 @@ def write_scene(folder: Path, role: str = "", example: str = "", **saving: float
     elif role == "body":
         first = example
     else:
-        assert role == ""
+        assert role in ("", "probe")
     named = "".join(f", {key} = {value!r}" for key, value in saving.items())
+    if role == "probe":
+        named += f", history_rate = {0.5 * RATE!r}"
     sections["serializer"] = set_first(sections["serializer"], repr(RATE) + named)
     sections["driver"] = set_first(sections["driver"], repr(T_STOP))
     bodies = []
@@ -137,7 +139,8 @@ def write_scene(folder: Path, role: str = "", example: str = "", **saving: float
         bodies[0] = first
     contact = sections.pop("contact")
     job = f"job {{ t = {T_START!r} dt = {DT!r} TYPE = 2 }}"
-    config = "\n".join([job, *sections.values(), *bodies, contact]) + "\n"
+    probe = example if role == "probe" else ""
+    config = "\n".join([job, *sections.values(), *bodies, contact, probe]) + "\n"
     (folder / "scene.cfg").write_text(config)
 
 

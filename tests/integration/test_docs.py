@@ -137,8 +137,13 @@ def write_example(role: str, example: str, folder: Path) -> None:
     elif role == "body":
         first = example
     else:
-        assert role == "contact"
+        assert role in ("contact", "probe")
         contact = example
+        if role == "probe":
+            plain = "properties = {0}"
+            assert plain in sections["serializer"]
+            more = "properties = {0, history_rate = 10}"
+            sections["serializer"] = sections["serializer"].replace(plain, more)
     bodies = [
         f'body\n{{\n    class = "DefaultBody"\n    name = "{name}"\n'
         + "\n".join(parts.values())
