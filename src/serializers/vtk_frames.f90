@@ -32,6 +32,8 @@ module mpm_vtk_frames
   !> A point file and a node file for each body and frame.
   type, abstract, extends(serializer_t) :: vtk_frames_t
     private
+    !> Points of the points file for each point in the frames.
+    integer, public :: stride = 1
     !> Folder of the frames.
     character(:), allocatable :: folder
     !> Name of the run in titles; may be empty.
@@ -91,12 +93,19 @@ module mpm_vtk_frames
 contains
 
   !> Describe the properties and remarks that these serializers have in common.
-  subroutine add_vtk_properties(description)
+  subroutine add_vtk_properties(description, with_rate)
     !> The description, started.
     type(description_t), intent(inout) :: description
+    !> Describe the rate as well; true when left out.
+    logical, intent(in), optional :: with_rate
+    logical :: has_rate
 
-    call description%add_real('rate', '1/s', 'frames per unit of time; 0 writes the first only', &
-                              lower=0.0_wp)
+    has_rate = .false.
+    if (present(with_rate)) has_rate = .not. with_rate
+    if (.not. has_rate) then
+      call description%add_real('rate', '1/s', 'frames per unit of time; 0 writes the first only', &
+                                lower=0.0_wp)
+    end if
     call description%add_integer('digits', 'significant digits of the numbers', &
                                  default=default_digits, lower=9, upper=17)
     call description%add_integer('binary', '1: binary files, with the numbers in full; 0: text', &
@@ -264,7 +273,7 @@ contains
     type(vtk_point_fields_t) :: fields
 
     call fields%open(body, path, self%title(model), self%digits, &
-                     when(self%frames, model%time), error, self%binary)
+                     when(self%frames, model%time), error, self%binary, self%stride)
     if (allocated(error)) return
     if (body%active .and. allocated(body%points)) call self%send_point_fields(body, fields)
     call fields%commit(error)
