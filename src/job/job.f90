@@ -57,6 +57,7 @@ contains
     call self%driver%prepare(self%model, error)
     if (allocated(error)) return
     call self%solver%start(self%model, error)
+    if (.not. allocated(error)) call self%driver%after_start(self%model)
     if (.not. allocated(error)) call self%serializer%check(self%model, error)
     if (.not. allocated(error)) return
     if (len(error%file) == 0) error%file = self%config
