@@ -83,15 +83,15 @@ contains
     call description%add_real('phi', '-', 'packing fraction', above=0.0_wp, upper=1.0_wp)
     call description%add_string('output_file', 'file for the lines, relative to the working &
                                 &directory')
-    call description%add_note('x runs down the slope, y across the bed from its floor at 0; gravity &
-                              &is (g sin theta, -g cos theta).')
+    call description%add_note('x runs down the slope, y across the bed from its floor at 0; &
+                              &gravity is (g sin theta, -g cos theta).')
     call description%add_note('Columns of the file: time; overshoot, the largest e_i; &
                               &velocity_error, the norm of the difference to the steady flow; &
                               &highest_y and centre_y of the points; largest and mean nodal &
                               &velocity along x.')
-    call description%add_note('Nodes above h have no steady velocity (mpm_3d: NaN a hair above it); &
-                              &what belongs to nodes at h is half of their volume, all of it at the &
-                              &top of the grid (mpm_3d: by the order of the nodes).')
+    call description%add_note('Nodes above h do not count (mpm_3d: NaN a hair above it); of nodes &
+                              &at h half of the volume counts, all of it at the top of the grid &
+                              &(mpm_3d: by the order of the nodes).')
   end subroutine chute_flow_driver_describe
 
   !> Set up from the properties.

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from checkpoints import FISH, MIXTURE
 from scene import Array, Run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -128,6 +129,9 @@ def write_example(role: str, example: str, folder: Path) -> None:
     generator = LATTICE + BOX
     if role in sections:
         sections[role] = example
+        if role == "driver" and "Fish" in example:
+            parts["material"] = FISH
+            (folder / "mixture.txt").write_text(MIXTURE)
     elif role == "part":
         parts["points"] = '    point-class = "CartesianPoints"\n    point-file = "block.parts"'
         generator = LATTICE + example
