@@ -16,6 +16,8 @@ module mpm_configurator
   use mpm_object_reader, only: class_of, lacks, properties_of
   use mpm_override, only: parse_override
   use mpm_parser, only: parse_text
+  use mpm_probe_registry, only: create_probe
+  use mpm_probe, only: probe_slot_t
   use mpm_properties, only: properties_t
   use mpm_section_reader, only: check_keys, single_value
   use mpm_serializer_registry, only: create_serializer
@@ -27,8 +29,10 @@ module mpm_configurator
   public :: configure
 
   !> Sections that a config has, in the order of the manual.
-  character(10), parameter :: section_names(7) = &
-    [character(10) :: 'job', 'serializer', 'driver', 'solver', 'grid', 'body', 'contact']
+  character(10), parameter :: section_names(8) = &
+    [character(10) :: 'job', 'serializer', 'driver', 'solver', 'grid', 'body', 'contact', 'probe']
+  !> How many of them a config needs, and how many can be there but once: the first ones.
+  integer, parameter :: n_needed = 6, n_single = 5
   !> Keys of the sections of single objects.
   character(14), parameter :: object_keys(4) = &
     [character(14) :: 'class', 'properties', 'int-properties', 'str-properties']
@@ -83,6 +87,8 @@ contains
     call read_all_bodies(document, job, error)
     if (allocated(error)) return
     call read_contacts(document, job, error)
+    if (allocated(error)) return
+    call read_probes(document, job, error)
   end subroutine configure
 
   !> Known sections, each as often as it may occur.
@@ -111,14 +117,14 @@ contains
           if (len(near) > 0) then
             near = 'did you mean "'//near//'"?'
           else
-            near = 'sections: job, serializer, driver, solver, grid, body, contact'
+            near = 'sections: job, serializer, driver, solver, grid, body, contact, probe'
           end if
           call raise(error, err_input, 'unknown section "'//excerpt(section%name)//'"', &
                      document%path, section%line, near)
           return
         end if
         first = document%find_section(section%name)
-        if (first < i .and. section%name /= 'body' .and. section%name /= 'contact') then
+        if (first < i .and. any(section_names(:n_single) == section%name)) then
           call raise(error, err_input, 'a second section "'//section%name//'"', document%path, &
                      section%line, 'the first stands in line '// &
                      to_text(document%sections(first)%line)//'; keep one')
@@ -126,7 +132,7 @@ contains
         end if
       end associate
     end do
-    do i = 1, size(section_names) - 1
+    do i = 1, n_needed
       if (document%find_section(trim(section_names(i))) > 0) cycle
       call raise(error, err_input, 'section "'//trim(section_names(i))//'" is missing', &
                  document%path, hint='add '//trim(section_names(i))//' { ... }')
@@ -348,6 +354,60 @@ contains
       end associate
     end do
   end subroutine read_contacts
+
+  !> The probes in the order of the config.
+  subroutine read_probes(document, job, error)
+    !> The config.
+    type(document_t), intent(in) :: document
+    !> The job: the probes of its history are set up.
+    type(job_t), intent(inout) :: job
+    !> The first thing wrong.
+    type(error_t), allocatable, intent(out) :: error
+    type(description_t) :: description
+    type(properties_t) :: properties
+    type(probe_slot_t), allocatable :: probes(:)
+    type(value_t) :: class, name
+    integer :: i, j, s
+    logical :: found
+
+    allocate (probes(document%count_sections('probe')))
+    s = 0
+    do i = 1, size(probes)
+      s = document%find_section('probe', s)
+      associate (section => document%sections(s), slot => probes(i))
+        call class_of(section, document%path, 'class', contact_keys, class, error)
+        if (allocated(error)) return
+        call single_value(section, document%path, 'name', name, found, error)
+        if (allocated(error)) return
+        call create_probe(class%text, slot%probe, error)
+        if (lacks(error, class)) return
+        if (.not. found) then
+          call raise(error, err_input, 'a probe needs a "name"', document%path, section%line, &
+                     'its columns in the history have it: name = "tip"')
+          return
+        end if
+        slot%probe%name = name%text
+        do j = 1, i - 1
+          if (probes(j)%probe%name /= name%text) cycle
+          call raise(error, err_input, 'a second probe named "'//excerpt(name%text)//'"', &
+                     name%file, name%line, 'names of probes are unique: choose another')
+          return
+        end do
+        call slot%probe%describe(description)
+        call properties_of(section, '', 'properties', description, job%model%kin%sim_type, class, &
+                           properties, error)
+        if (allocated(error)) return
+        call slot%probe%init(job%model%grid, job%model%bodies, properties, error)
+        if (lacks(error, class)) return
+        if (job%serializer%history%is_on()) cycle
+        call raise(error, err_input, 'a probe writes to the history, and there is none', &
+                   class%file, class%line, 'give the serializer a history_rate, for example &
+                   &properties = {60, history_rate = 1000}')
+        return
+      end associate
+    end do
+    call move_alloc(probes, job%serializer%history%probes)
+  end subroutine read_probes
 
   !> Put the values of an override in place of those of the config.
   subroutine apply_override(text, document, error)

@@ -26,8 +26,12 @@ module mpm_driver
     procedure(body_force_i), deferred :: body_force
     !> Prepare the model when everything is set up.
     procedure :: prepare => driver_prepare
+    !> Look at the model when the solver has started.
+    procedure :: after_start => driver_after_start
     !> Act on the model before a step.
     procedure :: before_step => driver_before_step
+    !> A frame has been written.
+    procedure :: at_frame => driver_at_frame
     !> Run from the start time to the stop time.
     procedure, non_overridable :: run => driver_run
     !> Choose the next step, or end the run.
@@ -97,6 +101,17 @@ contains
     end associate
   end subroutine driver_prepare
 
+  !> Most drivers have nothing to keep of the start.
+  subroutine driver_after_start(self, model)
+    !> The driver.
+    class(driver_t), intent(inout) :: self
+    !> The model at its start, mapped to its nodes.
+    type(model_t), intent(in) :: model
+
+    associate (unused => self, unused_model => model)
+    end associate
+  end subroutine driver_after_start
+
   !> Most drivers do nothing before a step.
   subroutine driver_before_step(self, model)
     !> The driver.
@@ -107,6 +122,19 @@ contains
     associate (unused => self, unused_model => model)
     end associate
   end subroutine driver_before_step
+
+  !> Most drivers do nothing with a frame.
+  subroutine driver_at_frame(self, model, error)
+    !> The driver.
+    class(driver_t), intent(inout) :: self
+    !> The state of the frame.
+    type(model_t), intent(in) :: model
+    !> What the driver writes can't be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (unused => self, unused_model => model)
+    end associate
+  end subroutine driver_at_frame
 
   !> Choose the next step, or end the run: here a step of the configured length.
   !!
@@ -202,6 +230,7 @@ contains
     if (serializer%frames == 0) then
       call model%clock%enter(phase_output)
       call serializer%write_frame(model, error)
+      if (.not. allocated(error)) call self%at_frame(model, error)
       if (allocated(error)) return
       call monitor%frame(model, serializer%frames)
     end if
@@ -222,8 +251,15 @@ contains
         call model%clock%enter(phase_output)
         call monitor%check(model, solver)
         call serializer%write_frame(model, error)
+        if (.not. allocated(error)) call self%at_frame(model, error)
         if (allocated(error)) exit
         call monitor%frame(model, serializer%frames)
+        call model%clock%enter(phase_other)
+      end if
+      if (serializer%history%is_on()) then
+        call model%clock%enter(phase_output)
+        call serializer%history%advance(model, error)
+        if (allocated(error)) exit
         call model%clock%enter(phase_other)
       end if
       call monitor%progress(model, self%t_stop, serializer%frames)

@@ -6,6 +6,7 @@ module mpm_job
   use mpm_kinds, only: lp
   use mpm_model, only: model_t
   use mpm_monitor, only: monitor_t
+  use mpm_phase_clock, only: phase_setup
   use mpm_serializer, only: serializer_t
   use mpm_solver, only: solver_t
   use omp_lib, only: omp_get_max_threads
@@ -49,7 +50,11 @@ contains
     integer :: i
 
     self%model%time = self%model%t_start
+    if (self%model%threads == 0) self%model%threads = self%solver%threads
     if (self%model%threads == 0) self%model%threads = omp_get_max_threads()
+    if (self%solver%timed .and. .not. self%model%clock%on) then
+      call self%model%clock%start(phase_setup)
+    end if
     do i = 1, size(self%model%bodies)
       call self%model%bodies(i)%body%points%sign()
       self%model%bodies(i)%body%points%body_force = self%driver%body_force(self%model%kin)
@@ -57,6 +62,7 @@ contains
     call self%driver%prepare(self%model, error)
     if (allocated(error)) return
     call self%solver%start(self%model, error)
+    if (.not. allocated(error)) call self%driver%after_start(self%model)
     if (.not. allocated(error)) call self%serializer%check(self%model, error)
     if (.not. allocated(error)) return
     if (len(error%file) == 0) error%file = self%config
@@ -74,6 +80,8 @@ contains
 
     if (allocated(self%checkpoints%text)) self%serializer%config_text = self%checkpoints%text
     call self%serializer%open(self%model, error)
+    if (allocated(error)) return
+    call self%serializer%history%open(self%model, error)
     if (allocated(error)) return
     call self%checkpoints%begin(self%model, self%serializer, error)
     if (allocated(error)) return

@@ -61,6 +61,12 @@ contains
       frames = frames + int(max(0.0_wp, intervals), lp)
     end if
     call line('frames:  '//to_text(frames)//' in '//job%serializer%destination())
+    associate (history => job%serializer%history)
+      if (history%is_on()) then
+        call line('history: '//to_text(history%rate)//' rows a second in '//history%file%path// &
+                  ', '//counted(size(history%probes), 'probe'))
+      end if
+    end associate
   end subroutine report_job
 
   !> A line for each body.

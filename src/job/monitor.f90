@@ -261,6 +261,10 @@ contains
     if (lost > 0) call self%say('points that left the grid: '//to_text(lost))
     call self%say('frames: '//to_text(serializer%frames)//' in '//serializer%destination()// &
                   ' ('//to_text(real(serializer%bytes, wp)/1.0e6_wp, 3)//' MB)')
+    if (serializer%history%is_on()) then
+      call self%say('history: '//counted(serializer%history%file%rows, 'row')//' in '// &
+                    serializer%history%file%path)
+    end if
     call self%say_phases(model%clock)
   end subroutine monitor_finish
 

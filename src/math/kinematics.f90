@@ -13,7 +13,7 @@ module mpm_kinematics
   use mpm_kinds, only: wp
   implicit none
   private
-  public :: expand_gradient, expand_stress, kinematics_t, make_kinematics
+  public :: axis_name, expand_gradient, expand_stress, kinematics_t, make_kinematics
   public :: type_1d, type_3d, type_axisymmetric, type_out_of_plane, type_plane_strain
 
   !> Uniaxial strain.
@@ -60,6 +60,21 @@ contains
     kin%nstress = nstresses(sim_type)
     kin%ngrad = ngrads(sim_type)
   end function make_kinematics
+
+  !> Name of a component of vectors.
+  pure function axis_name(kin, component) result(name)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Component, from 1.
+    integer, intent(in) :: component
+    !> `x`, `y`, `z`; in TYPE 4 `r`, `z`, `theta`.
+    character(:), allocatable :: name
+    character(*), parameter :: plain(3) = ['x', 'y', 'z']
+    character(*), parameter :: round(3) = [character(5) :: 'r', 'z', 'theta']
+
+    name = plain(component)
+    if (kin%sim_type == type_axisymmetric) name = trim(round(component))
+  end function axis_name
 
   !> Full tensor of stored stress components.
   pure function expand_stress(stress) result(tensor)

@@ -3,6 +3,7 @@ module mpm_serializer
   use mpm_configurable, only: configurable_t
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
+  use mpm_history, only: add_history_properties, history_t
   use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
   use mpm_properties, only: properties_t
@@ -36,6 +37,8 @@ module mpm_serializer
     logical :: save_at_end = .false.
     !> Save when a signal asks to stop or to save.
     logical :: save_on_signal = .true.
+    !> Rows of sums over the bodies, at a rate of their own.
+    type(history_t) :: history
     !> Rate of the run that was saved. [1/s]
     real(wp), private :: saved_rate = 0.0_wp
   contains
@@ -132,13 +135,15 @@ contains
                                  lower=0, upper=1)
     call description%add_note('Checkpoints are <save_folder>/<run_name>.<step>.h5; the last two &
                               &are kept. mpm3d -r FILE goes on from one.')
+    call add_history_properties(description)
   end subroutine add_save_properties
 
   !> Take when and where to save from the properties.
   subroutine serializer_init_saving(self, properties)
     !> The serializer.
     class(serializer_t), intent(inout) :: self
-    !> Checked properties, those of `add_save_properties`, `save_folder` and `run_name` among them.
+    !> Checked properties, those of `add_save_properties`, `frame_folder`, `save_folder` and
+    !! `run_name` among them.
     type(properties_t), intent(in) :: properties
     integer :: i
 
@@ -154,6 +159,7 @@ contains
     self%save_time = properties%real('save_time')
     self%save_at_end = properties%integer('save_at_end') == 1
     self%save_on_signal = properties%integer('save_on_signal') == 1
+    call self%history%init(properties, properties%string('frame_folder'), self%save_name)
   end subroutine serializer_init_saving
 
   !> Whether there is a folder for checkpoints.
@@ -235,6 +241,7 @@ contains
     call store%put('frames', self%frames)
     call store%put('skipped', self%skipped)
     call store%put('bytes', self%bytes)
+    call self%history%save(store)
   end subroutine serializer_save
 
   !> Take back what is known of the frames so far.
@@ -248,6 +255,7 @@ contains
     call store%get('frames', self%frames)
     call store%get('skipped', self%skipped)
     call store%get('bytes', self%bytes)
+    call self%history%restore(store)
   end subroutine serializer_restore
 
   !> Go on at a rate that was changed: with the first frame that is due after the present time.

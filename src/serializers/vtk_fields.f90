@@ -28,6 +28,8 @@ module mpm_vtk_fields
     type(vtk_legacy_t) :: file
     !> All entries of the file, for fields without a window of their own.
     type(window_t) :: whole
+    !> Values of a field without a window, where there are more than entries; negative elsewhere.
+    integer :: n_values = -1
     !> Name of the body.
     character(:), allocatable :: body
     !> Frame and time, for messages.
@@ -160,6 +162,7 @@ contains
     fits = .not. allocated(self%failure)
     if (.not. fits) return
     expected = self%whole%size()
+    if (self%n_values >= 0) expected = self%n_values
     if (present(window)) expected = window%size()
     fits = n == expected
     if (fits) return

@@ -3,13 +3,13 @@ module mpm_vtk_frames
   use mpm_body, only: body_t
   use mpm_description, only: description_t
   use mpm_errors, only: err_input, error_t, raise
+  use mpm_exact_number, only: exact_text
   use mpm_field_writer, only: field_writer_t
   use mpm_file_system, only: delete_leftovers
   use mpm_files, only: delete_file, join_path, make_directories
   use mpm_kinds, only: lp, wp
   use mpm_memory, only: available_memory
   use mpm_model, only: model_t
-  use mpm_number_parser, only: parse_real
   use mpm_number_text, only: default_digits
   use mpm_properties, only: properties_t
   use mpm_serializer, only: add_save_properties, serializer_t
@@ -32,6 +32,8 @@ module mpm_vtk_frames
   !> A point file and a node file for each body and frame.
   type, abstract, extends(serializer_t) :: vtk_frames_t
     private
+    !> Points of the points file for each point in the frames.
+    integer, public :: stride = 1
     !> Folder of the frames.
     character(:), allocatable :: folder
     !> Name of the run in titles; may be empty.
@@ -91,12 +93,19 @@ module mpm_vtk_frames
 contains
 
   !> Describe the properties and remarks that these serializers have in common.
-  subroutine add_vtk_properties(description)
+  subroutine add_vtk_properties(description, with_rate)
     !> The description, started.
     type(description_t), intent(inout) :: description
+    !> Describe the rate as well; true when left out.
+    logical, intent(in), optional :: with_rate
+    logical :: has_rate
 
-    call description%add_real('rate', '1/s', 'frames per unit of time; 0 writes the first only', &
-                              lower=0.0_wp)
+    has_rate = .false.
+    if (present(with_rate)) has_rate = .not. with_rate
+    if (.not. has_rate) then
+      call description%add_real('rate', '1/s', 'frames per unit of time; 0 writes the first only', &
+                                lower=0.0_wp)
+    end if
     call description%add_integer('digits', 'significant digits of the numbers', &
                                  default=default_digits, lower=9, upper=17)
     call description%add_integer('binary', '1: binary files, with the numbers in full; 0: text', &
@@ -264,7 +273,7 @@ contains
     type(vtk_point_fields_t) :: fields
 
     call fields%open(body, path, self%title(model), self%digits, &
-                     when(self%frames, model%time), error, self%binary)
+                     when(self%frames, model%time), error, self%binary, self%stride)
     if (allocated(error)) return
     if (body%active .and. allocated(body%points)) call self%send_point_fields(body, fields)
     call fields%commit(error)
@@ -379,22 +388,6 @@ contains
 
     when = 'frame '//to_text(frame)//', t = '//to_text(time)//' s'
   end function when
-
-  !> A real with as many digits as it takes to read the same number back.
-  pure function exact_text(number) result(text)
-    !> The number.
-    real(wp), intent(in) :: number
-    !> At most 17 significant digits.
-    character(:), allocatable :: text
-    real(wp) :: back
-    integer :: digits, status
-
-    do digits = 15, 17
-      text = to_text(number, digits)
-      call parse_real(text, 1_lp, len(text, lp), back, status)
-      if (.not. abs(back - number) > 0.0_wp) return
-    end do
-  end function exact_text
 
   !> A name for the title line: without line ends, not too long.
   pure function one_line(text) result(line)

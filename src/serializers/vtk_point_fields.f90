@@ -14,8 +14,10 @@ module mpm_vtk_point_fields
   !> Points in the order of the points file, as vertex cells.
   type, extends(vtk_fields_t) :: vtk_point_fields_t
     private
-    !> Storage slot of each point of the points file. (n)
+    !> Storage slots of the points in the file. (entries)
     integer, allocatable :: slot(:)
+    !> Points of the points file for each point in the file.
+    integer :: stride = 1
   contains
     !> Start the file and write the positions.
     procedure :: open => vtk_point_fields_open
@@ -28,7 +30,7 @@ contains
 
   !> Start the file and write the positions.
   subroutine vtk_point_fields_open(self, body, path, title, digits, when, error, &
-                                   binary)
+                                   binary, stride)
     !> The file.
     class(vtk_point_fields_t), intent(inout) :: self
     !> The body; without points the file has none.
@@ -45,6 +47,10 @@ contains
     type(error_t), allocatable, intent(out) :: error
     !> Numbers as bytes instead of text.
     logical, intent(in) :: binary
+    !> One in so many points is written; 1 when left out.
+    integer, intent(in), optional :: stride
+    integer, allocatable :: slot(:)
+    integer :: entry
 
     call self%file%open(path, title, digits, error, binary)
     if (allocated(error)) return
@@ -53,8 +59,11 @@ contains
     self%whole%n = 0
     if (allocated(body%points)) then
       self%kin = body%points%kin
-      self%whole%n = [body%points%n, 1, 1]
-      self%slot = body%points%slots()
+      if (present(stride)) self%stride = stride
+      self%n_values = body%points%n
+      self%whole%n = [body%points%n/self%stride, 1, 1]
+      slot = body%points%slots()
+      self%slot = [(slot(1 + (entry - 1)*self%stride), entry=1, self%whole%n(1))]
     end if
     call self%file%start_points(self%whole%size())
     if (self%whole%size() > 0) call self%put_positions(body%points)
@@ -72,8 +81,8 @@ contains
     integer :: first, m, i
 
     x = 0.0_wp
-    do first = 1, points%n, block_size
-      m = min(block_size, points%n - first + 1)
+    do first = 1, self%whole%size(), block_size
+      m = min(block_size, self%whole%size() - first + 1)
       do i = 1, m
         x(:self%kin%dim, i) = points%x(:, self%slot(first + i - 1))
       end do
@@ -107,9 +116,7 @@ contains
     !> Its name.
     character(:), allocatable :: text
 
-    associate (unused => self)
-    end associate
-    text = 'point '//to_text(entry)
+    text = 'point '//to_text(1 + (entry - 1)*self%stride)
   end function vtk_point_fields_label
 
 end module mpm_vtk_point_fields

@@ -51,15 +51,32 @@ module mpm_explicit_solver
 contains
 
   !> Add the properties of all explicit solvers.
-  subroutine add_explicit_properties(description)
+  subroutine add_explicit_properties(description, has_threads, has_debug)
     !> The description.
     type(description_t), intent(inout) :: description
+    !> Whether there is a number of threads; false when left out.
+    logical, intent(in), optional :: has_threads
+    !> Whether there is a table of times to ask for; false when left out.
+    logical, intent(in), optional :: has_debug
+    logical :: adds
 
     call description%add_integer('cpdi', '1: average the basis over the corners of each point''s &
                                  &box; 0: evaluate it at the point', default=1, lower=0, upper=1)
     call description%add_integer('contact', '1: contacts use trial momenta with all forces so far &
                                  &(implicit); 0: the momenta of the start of the step (explicit)', &
                                  default=1, lower=0, upper=1)
+    adds = .false.
+    if (present(has_threads)) adds = has_threads
+    if (adds) then
+      call description%add_integer('threads', 'number of threads; 0: those of the job', &
+                                   default=0, lower=0, upper=4096)
+    end if
+    adds = .false.
+    if (present(has_debug)) adds = has_debug
+    if (adds) then
+      call description%add_integer('debug', '1: a table of the time that each phase of the run &
+                                   &took, as with -v', default=0, lower=0, upper=1)
+    end if
     call description%add_integer('staggered', '1: velocities advance by (dt + last dt)/2, dt/2 in &
                                  &the first step, so that they belong to the middle of each step; &
                                  &0: by dt', default=0, lower=0, upper=1)

@@ -11,6 +11,10 @@ module mpm_solver
 
   !> An integrator of the equations of motion.
   type, abstract, extends(configurable_t) :: solver_t
+    !> Threads that its properties ask for; 0 for those of the job.
+    integer :: threads = 0
+    !> Whether its properties ask for the time of each phase.
+    logical :: timed = .false.
   contains
     !> Set up from the properties.
     procedure(init_i), deferred :: init

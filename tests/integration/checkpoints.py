@@ -58,6 +58,12 @@ BODIES = {
     "block_1": ([0.42, 0.22], [0.6, 0.4], [12, 12], [-0.5, -0.4]),
     "projectile": ([0.3, 0.7], [0.4, 0.8], [6, 6], [0.1, 0.2]),
 }
+#: The material of bodies that drivers of fish ask for, and a file that one of them reads: the mean
+#: and no variance but in the first and the last number.
+FISH = """    material-class = "Fish"
+    material-props = {1e4, 0.3, 0, 0, 0, 0, 0, 0, 0, 0, 0}"""
+VARIANCE = np.diag([1e-4, 0, 0, 0, 0, 0, 0, 0, 0.1]).ravel().tolist()
+MIXTURE = "1, 9\n\n" + ", ".join(map(repr, [1.0, *[0.02] * 3, *[6.0] * 3, 0, 0, 0, *VARIANCE]))
 #: What examples of materials are given so that waves are slow enough for the time step.
 SOFTER = {
     "Cornstarch": [("E = 1e6", "E = 1e5")],
@@ -116,6 +122,9 @@ def write_scene(folder: Path, role: str = "", example: str = "", **saving: float
     sections, parts, first = dict(SECTIONS), dict(PARTS), ""
     if role in sections:
         sections[role] = example
+        if role == "driver" and "Fish" in example:
+            parts["material"] = FISH
+            (folder / "mixture.txt").write_text(MIXTURE)
     elif role in parts:
         parts[role], _, text = example.partition("# block.parts\n")
         box = 'part { class = "Box" properties = {0.2, 0.2, 0.4, 0.4} }\n'
@@ -123,9 +132,15 @@ def write_scene(folder: Path, role: str = "", example: str = "", **saving: float
     elif role == "body":
         first = example
     else:
-        assert role == ""
+        assert role in ("", "probe")
     named = "".join(f", {key} = {value!r}" for key, value in saving.items())
-    sections["serializer"] = set_first(sections["serializer"], repr(RATE) + named)
+    if role == "probe":
+        named += f", history_rate = {0.5 * RATE!r}"
+    serializer, n = re.subn(
+        r"(\n *properties = \{[^}]*)\}", rf"\g<1>{named}}}", sections["serializer"], count=1
+    )
+    assert n == 1
+    sections["serializer"] = set_first(serializer, repr(RATE))
     sections["driver"] = set_first(sections["driver"], repr(T_STOP))
     bodies = []
     for name, (lower, upper, counts, velocity) in BODIES.items():
@@ -141,7 +156,8 @@ def write_scene(folder: Path, role: str = "", example: str = "", **saving: float
         bodies[0] = first
     contact = sections.pop("contact")
     job = f"job {{ t = {T_START!r} dt = {DT!r} TYPE = 2 }}"
-    config = "\n".join([job, *sections.values(), *bodies, contact]) + "\n"
+    probe = example if role == "probe" else ""
+    config = "\n".join([job, *sections.values(), *bodies, contact, probe]) + "\n"
     (folder / "scene.cfg").write_text(config)
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from checkpoints import FISH, MIXTURE
 from scene import Array, Run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -128,6 +129,9 @@ def write_example(role: str, example: str, folder: Path) -> None:
     generator = LATTICE + BOX
     if role in sections:
         sections[role] = example
+        if role == "driver" and "Fish" in example:
+            parts["material"] = FISH
+            (folder / "mixture.txt").write_text(MIXTURE)
     elif role == "part":
         parts["points"] = '    point-class = "CartesianPoints"\n    point-file = "block.parts"'
         generator = LATTICE + example
@@ -137,8 +141,13 @@ def write_example(role: str, example: str, folder: Path) -> None:
     elif role == "body":
         first = example
     else:
-        assert role == "contact"
+        assert role in ("contact", "probe")
         contact = example
+        if role == "probe":
+            plain = "properties = {0}"
+            assert plain in sections["serializer"]
+            more = "properties = {0, history_rate = 10}"
+            sections["serializer"] = sections["serializer"].replace(plain, more)
     bodies = [
         f'body\n{{\n    class = "DefaultBody"\n    name = "{name}"\n'
         + "\n".join(parts.values())

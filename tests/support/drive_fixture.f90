@@ -79,6 +79,7 @@ contains
     if (allocated(error)) return
     call solver%start(model, error)
     if (allocated(error)) return
+    call driver%after_start(model)
     call serializer%open(model, error)
     call driver%run(model, solver, serializer, monitor, error)
   end subroutine drive

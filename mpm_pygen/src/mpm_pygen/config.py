@@ -196,6 +196,8 @@ class Config:
         At least one.
     contacts : Sequence[Object]
         In the order in which they act.
+    probes : Sequence[Object]
+        What the history tells besides the sums over bodies; each needs a name.
     remark : str
         Comment above the first section.
     """
@@ -207,11 +209,13 @@ class Config:
     grid: Object
     bodies: Sequence[Body]
     contacts: Sequence[Object] = ()
+    probes: Sequence[Object] = ()
     remark: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
         """Let lists and tuples be equal."""
         self.bodies, self.contacts = tuple(self.bodies), tuple(self.contacts)
+        self.probes = tuple(self.probes)
 
     def text(self) -> str:
         """Write the config."""
@@ -224,6 +228,7 @@ class Config:
             sections.append(_section(role, getattr(self, role).entries()))
         sections += [_section("body", body.entries()) for body in self.bodies]
         sections += [_section("contact", contact.entries()) for contact in self.contacts]
+        sections += [_section("probe", probe.entries()) for probe in self.probes]
         remark = "".join(f"# {line}".rstrip() + "\n" for line in self.remark.splitlines())
         return remark + "".join(sections)[0 if remark else 1 :]
 

@@ -61,12 +61,14 @@ def parse_config(text: str, path: str = "config") -> Config:
     """
     _, sections = _parse(path, text)
     one: dict[str, _Section] = {}
-    bodies, contacts = [], []
+    bodies, contacts, probes = [], [], []
     for section in sections:
         if section.name == "body":
             bodies.append(_body(section))
         elif section.name == "contact":
             contacts.append(_object(section))
+        elif section.name == "probe":
+            probes.append(_object(section))
         else:
             one[section.name] = section
     for name in ("job", "serializer", "driver", "solver", "grid"):
@@ -86,6 +88,7 @@ def parse_config(text: str, path: str = "config") -> Config:
         grid=_object(one["grid"]),
         bodies=bodies,
         contacts=contacts,
+        probes=probes,
     )
 
 
