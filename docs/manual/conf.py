@@ -18,8 +18,8 @@ from sphinx.util import logging
 from sphinx.writers.html5 import HTML5Translator
 
 ROOT = Path(__file__).resolve().parents[2]
-#: What links to Fortran sources become: pages of the API, which FORD writes.
-API = "api/sourcefile"
+#: Folder of the API, which FORD writes: what links to Fortran sources and to src lead to.
+API = "api"
 LINK = re.compile(r"(?<=\]\()(?![a-z]+:|#)([^)\s#]+)")
 LOG = logging.getLogger(__name__)
 
@@ -68,6 +68,15 @@ CHAPTERS = {
     "Scenes and tools": ["docs/scenes", "configs/README", "mpm_pygen/README"],
     "Evidence": ["docs/verification", "docs/verification/README", "docs/performance"],
 }
+#: Names in the margin, where they differ from those of the pages.
+TITLES = {
+    "docs/README": "Contents",
+    "docs/reference/README": "5 Classes",
+    "docs/tutorials/first_scene": "From an empty folder to a picture",
+    "docs/tutorials/own_material": "A material in one file",
+    "docs/scenes": "Pictures of the scenes",
+    "configs/README": "Configs of the scenes",
+}
 #: Pages below a page.
 BELOW = {
     "docs/reference/README": "docs/reference/*/*.md",
@@ -106,7 +115,8 @@ def pages_below(name: str) -> list[str]:
 def tree(names: list[str], caption: str = "") -> str:
     """Return a list of contents for the margin."""
     head = f":hidden:\n:caption: {caption}\n" if caption else ":hidden:\n"
-    return "\n\n```{toctree}\n" + head + "\n" + "\n".join(f"/{name}" for name in names) + "\n```\n"
+    lines = [f"{TITLES[name]} </{name}>" if name in TITLES else f"/{name}" for name in names]
+    return "\n\n```{toctree}\n" + head + "\n" + "\n".join(lines) + "\n```\n"
 
 
 def contents(app: Sphinx, name: str) -> str:
@@ -132,6 +142,8 @@ def prepare(app: Sphinx, name: str, source: list[str]) -> None:
 
     def known(match: re.Match[str]) -> str:
         target = (folder / match[1]).resolve()
+        if target == ROOT / "src":
+            return "source:index"
         if target.suffix in (".f90", ".F90") and target.is_relative_to(ROOT / "src"):
             if not target.is_file():
                 LOG.warning("%s: there is no %s", name, match[1])
@@ -148,7 +160,8 @@ def find_sources(app: Sphinx, doctree: nodes.document, name: str) -> None:
     for link in doctree.findall(nodes.reference):
         scheme, _, file = link.get("refuri", "").partition(":")
         if scheme == "source":
-            link["refuri"] = os.path.relpath(f"{API}/{file}.html", Path(name).parent)
+            page = "index" if file == "index" else f"sourcefile/{file}"
+            link["refuri"] = os.path.relpath(f"{API}/{page}.html", Path(name).parent)
 
 
 def show_formula(self: HTML5Translator, node: nodes.Element) -> None:

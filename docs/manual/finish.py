@@ -1,19 +1,28 @@
 #!/usr/bin/env python3
-"""Check that every link, anchor and picture of the built manual is there.
+"""Finish the built manual: pages of the API that need no network, links that lead somewhere.
 
-usage: check_links.py FOLDER
+usage: finish.py FOLDER
 
-Reads all pages in the folder. Links to other hosts are not followed. Exit status 1, with a line for
-each that leads nowhere. In the folder api, where FORD links to pages of private procedures, which
-it does not write, such links become plain text.
+In the folder api, FORD's pages lose the scripts and styles that a browser would fetch from other
+hosts, and links to private procedures, for which FORD writes no page, become plain text. Then every
+link, anchor and picture of all pages is looked up; those to other hosts are not. Exit status 1,
+with a line for each that leads nowhere.
 """
 
 from __future__ import annotations
 
+import re
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
+
+#: What a browser would fetch from other hosts.
+FETCHED = re.compile(
+    r"<link\b[^>]*href=\"https?:[^>]*>"
+    r"|<script\b[^>]*(src=\"https?:|x-mathjax)[^>]*>.*?</script>",
+    re.DOTALL,
+)
 
 
 class Page(HTMLParser):
@@ -56,6 +65,12 @@ def dead_links(folder: Path) -> list[tuple[Path, str, str]]:
     return sorted(dead)
 
 
+def keep_local(page: Path) -> None:
+    """Take out of a page what a browser would fetch from other hosts."""
+    text = page.read_text("utf-8")
+    page.write_text(FETCHED.sub("", text), "utf-8")
+
+
 def unlink(page: Path, link: str) -> None:
     """Make plain text of a link."""
     text = page.read_text("utf-8")
@@ -63,11 +78,13 @@ def unlink(page: Path, link: str) -> None:
 
 
 def main() -> int:
-    """Check a folder."""
+    """Finish and check a folder."""
     if len(sys.argv) != 2:
         print(__doc__, file=sys.stderr)
         return 2
     folder = Path(sys.argv[1]).resolve()
+    for path in (folder / "api").rglob("*.html"):
+        keep_local(path)
     for page, link, _ in dead_links(folder):
         if page.parts[0] == "api":
             unlink(folder / page, link)
