@@ -1,4 +1,5 @@
-# `cmake --install`: the program, the library, its modules, and a package for find_package(mpm3d).
+# `cmake --install`: the program, the library, its modules, and a package for find_package(mpm3d),
+# with the function mpm3d_add_program.
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/mpm3d)
 
@@ -7,6 +8,18 @@ get_target_property(module_folder mpm3d_core Fortran_MODULE_DIRECTORY)
 install(DIRECTORY ${module_folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mpm3d
   FILES_MATCHING PATTERN "*.mod")
 install(EXPORT mpm3dTargets NAMESPACE mpm3d:: DESTINATION ${package_folder})
+
+# What mpm3d_add_program needs: the classes of each role, the program, and the template of a registry.
+get_property(mpm_roles GLOBAL PROPERTY mpm_roles)
+set(mpm_types "set(mpm3d_roles ${mpm_roles})\n")
+foreach(role IN LISTS mpm_roles)
+  get_property(types GLOBAL PROPERTY mpm_${role}_types)
+  string(APPEND mpm_types "set(mpm3d_${role}_types ${types})\n")
+endforeach()
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/mpm_program.cmake ${CMAKE_CURRENT_LIST_DIR}/mpm_register.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/registry.f90.in DESTINATION ${package_folder})
+install(FILES ${PROJECT_SOURCE_DIR}/src/app/command_line.f90 ${PROJECT_SOURCE_DIR}/src/app/mpm3d.f90
+  DESTINATION ${package_folder}/app)
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/mpm3dConfig.cmake.in
   ${PROJECT_BINARY_DIR}/mpm3dConfig.cmake INSTALL_DESTINATION ${package_folder})

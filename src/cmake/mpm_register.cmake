@@ -48,7 +48,7 @@ function(mpm_write_registry role)
     string(APPEND uses "  use mpm_${stem}, only: ${stem}_t\n")
     string(APPEND cases "    case (${count})\n      allocate (${stem}_t :: item)\n")
   endforeach()
-  configure_file(${PROJECT_SOURCE_DIR}/src/cmake/registry.f90.in ${role}_registry.f90 @ONLY)
+  configure_file(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/registry.f90.in ${role}_registry.f90 @ONLY)
 endfunction()
 
 # mpm_register_roles(): generates registry.f90, which finds the classes of a role given by name.

@@ -1,4 +1,4 @@
-!> Signals: asked to stop, asked to save.
+!> Signals that ask to stop or to save.
 !!
 !! A signal handler can do no more than set a flag. These flags are the only state of the program
 !! that belongs to no object.

@@ -1,4 +1,4 @@
-!> Avoid-a-void: points where a body has opened up, fewer where they have come together.
+!> Avoid a void: points where a body has opened up, fewer where they have come together.
 !!
 !! A material that stretches draws its points apart until the grid sees holes that are not there. A
 !! level set tells inside from outside; where inside no point is near, one is inserted, to which its

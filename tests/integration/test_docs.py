@@ -89,12 +89,47 @@ def test_links_lead_somewhere(document: Path) -> None:
             assert anchor in anchors(target), f"{link}: no such heading"
 
 
+@pytest.mark.parametrize("document", DOCUMENTS, ids=name_of)
+def test_no_heading_is_empty(document: Path) -> None:
+    """Behind each heading stands text, or a heading below it."""
+    text = FENCED.sub("text", document.read_text("utf-8"))
+    levels = [len(line.split()[0]) for line in re.findall(r"^#+ .*$", text, re.MULTILINE)]
+    bodies = re.split(r"^#+ .*$", text, flags=re.MULTILINE)[1:]
+    for i, body in enumerate(bodies):
+        below = i + 1 < len(levels) and levels[i + 1] > levels[i]
+        assert body.strip() or below, f"heading {i + 1} of {document.name}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_pages_are_complete(page: Path) -> None:
+    """A class has a purpose, properties, an example, theory or fields, a source and its checks."""
+    text = page.read_text("utf-8")
+    headings = re.findall(r"^## (.*)$", text, re.MULTILINE)
+    assert headings[:2] == ["Properties", "Example"]
+    assert "Source" in headings
+    assert headings[-1] == "Checks"
+    assert set(headings) - {"Properties", "Example", "Remarks", "Source", "Checks"}
+    purpose = text.split("Code: [")[1].split("\n\n")[1]
+    assert purpose[0].isupper()
+    assert purpose[-1] == "."
+
+
+def test_diagrams_are_up_to_date(tmp_path: Path) -> None:
+    """docs/images/make_diagrams.py draws the files that are there."""
+    script = ROOT / "docs" / "images" / "make_diagrams.py"
+    subprocess.run([sys.executable, script, tmp_path], check=True)
+    drawn = sorted(tmp_path.glob("*.svg"))
+    assert len(drawn) == 3
+    for path in drawn:
+        assert path.read_bytes() == (script.parent / path.name).read_bytes(), path.name
+
+
 def test_every_class_has_an_up_to_date_page(executable: Path, tmp_path: Path) -> None:
     """Writing the reference anew changes nothing; scripts/docs repairs it."""
     command = [sys.executable, ROOT / "scripts" / "docs", executable, "--to", tmp_path]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     written = {path.relative_to(tmp_path): path for path in tmp_path.rglob("*.md")}
-    kept = {path.relative_to(REFERENCE): path for path in [*PAGES, REFERENCE / "README.md"]}
+    kept = {path.relative_to(REFERENCE): path for path in [*PAGES, *REFERENCE.glob("*.md")]}
     assert len(written) > 10
     assert written.keys() == kept.keys()
     for name, path in written.items():
