@@ -72,6 +72,14 @@ contact
     properties = {1e-07}
     str-properties = {"block", "wall"}
 }
+
+probe
+{
+    class = "PlaneProbe"
+    name = "gate"
+    properties = {0.5}
+    str-properties = {"x"}
+}
 """
 
 
@@ -87,6 +95,7 @@ def _config() -> Config:
             Body("block", material=Object("IsotropicLinearElasticity", (1e5, {"nu": 0.3}))),
         ],
         contacts=[Object("ContactHuang", (1e-7,), str_properties=("block", "wall"), name="hit")],
+        probes=[Object("PlaneProbe", (0.5,), str_properties=("x",), name="gate")],
         remark="A remark\nof two lines",
     )
 

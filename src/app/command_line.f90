@@ -9,9 +9,9 @@ module mpm_command_line
 
   !> What the program is asked to do.
   type :: command_line_t
-    !> `run`, `check`, `list`, `describe`, `version` or `help`.
+    !> `run`, `check`, `estimate`, `list`, `describe`, `version` or `help`.
     character(:), allocatable :: action
-    !> The config of `run` and `check`.
+    !> The config of `run`, `check` and `estimate`.
     character(:), allocatable :: config
     !> The checkpoint to go on from; empty for none.
     character(:), allocatable :: checkpoint
@@ -37,6 +37,7 @@ contains
            'usage: mpm3d -c FILE [options]     run the scene of a config'//nl// &
            '       mpm3d -r FILE [options]     go on from a checkpoint'//nl// &
            '       mpm3d -c FILE --check       read everything, run nothing, report sizes'//nl// &
+           '       mpm3d -c FILE --estimate    time a few steps, tell how long a run takes'//nl// &
            '       mpm3d --list [ROLE]         classes that a config can name'//nl// &
            '       mpm3d --describe CLASS      purpose and properties of a class'//nl// &
            '       mpm3d --version | --help'//nl//nl// &
@@ -44,6 +45,11 @@ contains
            '         --set SECTION.KEY=VALUE   replace what the config says; may repeat;'//nl// &
            '                                   bodies and contacts: body.NAME.KEY=VALUE'//nl// &
            '         -q, -v                    say less, say more'//nl//nl// &
+           'examples: mpm3d -c two_blocks.cfg --check'//nl// &
+           '          mpm3d -c two_blocks.cfg --threads 2 --set job.dt=1e-5'//nl// &
+           '          mpm3d -r save/two_blocks.000000012000.h5'//nl// &
+           '          mpm3d --describe ContactHuang'//nl//nl// &
+           'environment: OMP_NUM_THREADS, NO_COLOR'//nl//nl// &
            'exit status: 0 done, 1 wrong usage, 2 bad input, 3 the simulation went bad,'//nl// &
            '             4 output failed, 130 or 143 stopped by SIGINT or SIGTERM'
   end function usage
@@ -72,6 +78,8 @@ contains
         call next_value(i, argument, 'a checkpoint', command%checkpoint, error)
       case ('--check')
         call set_action(command, 'check', error)
+      case ('--estimate')
+        call set_action(command, 'estimate', error)
       case ('--list')
         call set_action(command, 'list', error)
         if (i < command_argument_count()) then
@@ -126,9 +134,10 @@ contains
     case ('')
       call raise(error, err_usage, 'nothing to do', hint='mpm3d -c FILE runs a scene; mpm3d --help &
                  &tells more')
-    case ('check')
+    case ('check', 'estimate')
       if (len(command%config//command%checkpoint) == 0) then
-        call raise(error, err_usage, '--check needs a config', hint='mpm3d -c FILE --check')
+        call raise(error, err_usage, '--'//command%action//' needs a config', &
+                   hint='mpm3d -c FILE --'//command%action)
       end if
     case default
       continue
@@ -209,9 +218,9 @@ contains
     character(*), intent(in) :: argument
     !> The error.
     type(error_t), allocatable, intent(inout) :: error
-    character(10), parameter :: options(9) = &
-      [character(10) :: '--check', '--list', '--describe', '--version', '--help', '--threads', &
-       '--set', '--config', '--restart']
+    character(10), parameter :: options(10) = &
+      [character(10) :: '--check', '--estimate', '--list', '--describe', '--version', '--help', &
+       '--threads', '--set', '--config', '--restart']
     type(string_t) :: known(size(options))
     character(:), allocatable :: hint
     integer :: i

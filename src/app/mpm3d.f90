@@ -3,6 +3,7 @@ program mpm3d
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mpm_build_info, only: build_type, compiler, revision, version
+  use mpm_colours, only: coloured
   use mpm_command_line, only: command_line_t, read_command_line, usage
   use mpm_console, only: finish_output, put_line
   use mpm_configurator, only: configure
@@ -15,6 +16,7 @@ program mpm3d
   use mpm_phase_clock, only: phase_clock_t, phase_setup
   use mpm_registry, only: describe_classes, role_names
   use mpm_restart, only: restart
+  use mpm_run_estimate, only: estimate_run
   use mpm_signals, only: ignore_file_limit, watch_signals
   use mpm_strings, only: append_text, excerpt, nearest_name, string_t
   implicit none
@@ -31,6 +33,8 @@ program mpm3d
     end subroutine c_exit
   end interface
 
+  !> File descriptor of the standard error.
+  integer, parameter :: standard_error = 2
   type(command_line_t) :: command
   type(error_t), allocatable :: error, lost
 
@@ -39,7 +43,7 @@ program mpm3d
   call finish_output(lost)
   if (allocated(lost) .and. .not. allocated(error)) call move_alloc(lost, error)
   if (allocated(error)) then
-    write (error_unit, '(a)') error%text()
+    write (error_unit, '(a)') coloured(error%text(), standard_error)
     flush (error_unit)
     call c_exit(int(error%code, c_int))
   end if
@@ -94,6 +98,10 @@ contains
     end if
     if (command%verbosity > quiet) call report_job(job)
     if (command%action == 'check') return
+    if (command%action == 'estimate') then
+      call estimate_run(job, error)
+      return
+    end if
     call ignore_file_limit()
     call watch_signals()
     call job%run(monitor, error)

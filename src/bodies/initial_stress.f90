@@ -89,7 +89,7 @@ contains
     !> The error.
     type(error_t), allocatable, intent(inout) :: error
 
-    call raise(error, err_input, 'the material of body "'//body%name//'" can''t have '//what// &
+    call raise(error, err_input, 'the material of body "'//body%name//'" cannot have '//what// &
                ' at point '//to_text(body%points%id(slot)), &
                hint='see mpm3d --describe of the material for the stresses that it admits')
   end subroutine raise_refusal

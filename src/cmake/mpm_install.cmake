@@ -27,3 +27,6 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/mpm3dConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/mpm3dConfig.cmake ${PROJECT_BINARY_DIR}/mpm3dConfigVersion.cmake
   DESTINATION ${package_folder})
+
+install(FILES ${CMAKE_CURRENT_SOURCE_DIR}/src/app/mpm3d.bash RENAME mpm3d
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)

@@ -3,7 +3,7 @@ module mpm_strings
   use mpm_kinds, only: lp, wp
   implicit none
   private
-  public :: append_text, counted, excerpt, nearest_name, string_t, to_text
+  public :: append_text, counted, duration_text, excerpt, nearest_name, string_t, to_text
 
   !> A text of any length, for lists of texts.
   type :: string_t
@@ -118,6 +118,26 @@ contains
     if (buffer(mantissa_end:mantissa_end) == '.') mantissa_end = mantissa_end - 1
     text = buffer(:mantissa_end)//'e'//long_to_text(int(n, lp))
   end function real_to_text
+
+  !> A time span in words.
+  pure function duration_text(seconds) result(text)
+    !> The span. [s]
+    real(wp), intent(in) :: seconds
+    !> For example `1 h 2 min` or `3.14 s`.
+    character(:), allocatable :: text
+    integer :: minutes
+
+    if (seconds < 100.0_wp) then
+      text = real_to_text(seconds, 3)//' s'
+    else
+      minutes = int(min(seconds, 1.0e9_wp)/60.0_wp)
+      if (minutes < 60) then
+        text = integer_to_text(minutes)//' min '//integer_to_text(int(seconds) - 60*minutes)//' s'
+      else
+        text = integer_to_text(minutes/60)//' h '//integer_to_text(mod(minutes, 60))//' min'
+      end if
+    end if
+  end function duration_text
 
   !> Write `d.ddd * 10**exponent` without an exponent and without trailing zeros.
   pure function plain_text(mantissa, exponent) result(text)

@@ -89,7 +89,7 @@ contains
       call properties%reject('Nx', 'the grid has more than '//to_text(huge(1))//' nodes', error, &
                              'use fewer cells')
     else if (kin%sim_type == type_axisymmetric .and. self%lower(1) < 0.0_wp) then
-      call properties%reject(origins(1), 'in TYPE 4 x is the radius, which can''t begin at '// &
+      call properties%reject(origins(1), 'in TYPE 4 x is the radius, which cannot begin at '// &
                              to_text(self%lower(1)), error, 'use 0 or more')
     end if
   end subroutine cartesian_init_box
@@ -109,7 +109,7 @@ contains
       self%periodic(d) = properties%integer(names(d)) == 1
     end do
     if (self%periodic(1) .and. self%kin%sim_type == type_axisymmetric) then
-      call properties%reject(names(1), 'in TYPE 4 x is the radius, which can''t be periodic', &
+      call properties%reject(names(1), 'in TYPE 4 x is the radius, which cannot be periodic', &
                              error, 'use 0')
     end if
   end subroutine cartesian_init_periodic

@@ -1,6 +1,7 @@
 !> What the program tells of a run: summaries at its start and end, progress, warnings.
 module mpm_monitor
   use, intrinsic :: iso_fortran_env, only: error_unit
+  use mpm_colours, only: coloured
   use mpm_console, only: finish_output, put_line, put_now
   use mpm_energy, only: energy_t, measure
   use mpm_errors, only: error_t
@@ -11,7 +12,7 @@ module mpm_monitor
   use mpm_serializer, only: serializer_t
   use mpm_solver, only: solver_t
   use mpm_store, only: store_t
-  use mpm_strings, only: counted, to_text
+  use mpm_strings, only: counted, duration_text, to_text
   implicit none
   private
   public :: monitor_t
@@ -23,8 +24,8 @@ module mpm_monitor
   integer, parameter :: normal = 1
   !> A line for every frame as well.
   integer, parameter :: verbose = 2
-  !> File descriptor of the standard output.
-  integer, parameter :: standard_output = 1
+  !> File descriptors of the standard output and the standard error.
+  integer, parameter :: standard_output = 1, standard_error = 2
   !> What brings a terminal to the start of its line, and erases the line from there on.
   character(*), parameter :: start_of_line = achar(13), erase_line = achar(27)//'[K'
   !> Seconds between two progress lines.
@@ -222,7 +223,7 @@ contains
     call put_now(start_of_line//'t = '//to_text(model%time, 4)//' s   '// &
       to_text(int(100.0_wp*done))//' %   frames '//to_text(frames)//'   '// &
       to_text(speed, 3)//' steps/s   left '// &
-      duration(anint(seconds*(1.0_wp - part)/part))//erase_line)
+      duration_text(anint(seconds*(1.0_wp - part)/part))//erase_line)
   end subroutine monitor_progress
 
   !> End of the run: cost, momentum and energy.
@@ -241,7 +242,7 @@ contains
     seconds = self%elapsed()
     call measure(model, now)
     call self%say('done: '//counted(model%step, 'step')//' to t = '// &
-                  to_text(model%time)//' s in '//duration(seconds)//', '// &
+                  to_text(model%time)//' s in '//duration_text(seconds)//', '// &
                   to_text(1.0e9_wp*seconds/max(1.0_wp, self%point_steps), 3)// &
                   ' ns per point and step, frames included')
     call self%say('momentum: '//vector_text(self%at_start%momentum(:model%kin%nvel))//' -> '// &
@@ -352,7 +353,7 @@ contains
     call self%clear_line()
     ! Whether it fails is asked at the end of the program.
     call finish_output(ignored)
-    write (error_unit, '(a)') 'warning: '//text
+    write (error_unit, '(a)') coloured('warning: '//text, standard_error)
   end subroutine monitor_warn
 
   !> Take the progress line off the terminal, so that the next text stands alone.
@@ -403,25 +404,5 @@ contains
     end do
     text = text//')'
   end function vector_text
-
-  !> A time span in words.
-  pure function duration(seconds) result(text)
-    !> The span. [s]
-    real(wp), intent(in) :: seconds
-    !> For example `1 h 2 min` or `3.14 s`.
-    character(:), allocatable :: text
-    integer :: minutes
-
-    if (seconds < 100.0_wp) then
-      text = to_text(seconds, 3)//' s'
-    else
-      minutes = int(min(seconds, 1.0e9_wp)/60.0_wp)
-      if (minutes < 60) then
-        text = to_text(minutes)//' min '//to_text(int(seconds) - 60*minutes)//' s'
-      else
-        text = to_text(minutes/60)//' h '//to_text(mod(minutes, 60))//' min'
-      end if
-    end if
-  end function duration
 
 end module mpm_monitor

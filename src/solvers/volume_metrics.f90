@@ -76,7 +76,7 @@ contains
     end if
     if (status == 0) close (unit, iostat=status, iomsg=reason)
     if (status == 0) return
-    call raise(error, err_io, 'can''t write error metrics to '//path//': '//trim(reason), &
+    call raise(error, err_io, 'the file cannot be written: '//trim(reason), file=path, &
                hint='the first string of ExplicitUSLwithVolumetricStrainSmoothing names the file')
   end subroutine write_volume_metrics
 

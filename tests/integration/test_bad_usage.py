@@ -18,6 +18,13 @@ from scene import Run
         pytest.param(["-c", ""], USAGE, "-c needs a config file", id="empty-file"),
         pytest.param(["scene.cfg"], USAGE, 'unexpected argument "scene.cfg"', id="no-option"),
         pytest.param(["--check"], USAGE, "--check needs a config", id="check-alone"),
+        pytest.param(["--estimate"], USAGE, "--estimate needs a config", id="estimate-alone"),
+        pytest.param(
+            ["-c", "scene.cfg", "--check", "--estimate"],
+            USAGE,
+            "--check and --estimate exclude each other",
+            id="check-and-estimate",
+        ),
         pytest.param(["--chekc"], USAGE, "did you mean --check?", id="misspelt"),
         pytest.param(
             ["-r", "save/a.h5", "-c", "scene.cfg"],

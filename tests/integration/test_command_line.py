@@ -22,6 +22,7 @@ ROLES = [
     "material",
     "boundary",
     "contact",
+    "probe",
 ]
 
 
@@ -68,8 +69,8 @@ def test_help(mpm3d: Run, tmp_path: Path, option: str) -> None:
     result = mpm3d(option, cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
     for word in (
-        *("-c", "--check", "--list", "--describe", "--version", "--help"),
-        *("--threads", "--set", "-q", "-v", "exit status"),
+        *("-c", "--check", "--estimate", "--list", "--describe", "--version", "--help"),
+        *("--threads", "--set", "-q", "-v", "exit status", "examples"),
     ):
         assert word in result.stdout, word
 
