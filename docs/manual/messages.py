@@ -1,7 +1,8 @@
-"""Every error and warning of the program, read from its sources."""
+"""Every error and warning of the program and of mpm_pygen, read from their sources."""
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -25,6 +26,7 @@ AREAS = {
     "job": "Runs, checkpoints, warnings",
     "core": "State in checkpoints",
     "io": "Files",
+    "mpm_pygen": "mpm_pygen",
 }
 #: Exit status of the program by the constant of `mpm_errors`.
 STATUS = {"err_usage": "1", "err_input": "2", "err_simulation": "3", "err_io": "4"}
@@ -130,15 +132,35 @@ def messages_of(path: Path, area: str) -> Iterator[Message]:
         yield Message(area, f'body "{OPEN}": {form(remark)}', "", "warning")
 
 
-def read_messages(sources: Path) -> list[Message]:
-    """Return the messages of all sources, area by area."""
+def python_messages(path: Path) -> Iterator[Message]:
+    """Yield the messages of the errors of mpm_pygen in a source file."""
+    for call in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if not isinstance(call, ast.Call) or not call.args:
+            continue
+        if not isinstance(call.func, ast.Name) or call.func.id != "PygenError":
+            continue
+        text = call.args[0]
+        parts = text.values if isinstance(text, ast.JoinedStr) else [text]
+        words = [
+            part.value if isinstance(part, ast.Constant) and isinstance(part.value, str) else OPEN
+            for part in parts
+        ]
+        yield Message("mpm_pygen", re.sub(f"{OPEN}+", OPEN, "".join(words)), "", "2")
+
+
+def read_messages(root: Path) -> list[Message]:
+    """Return the messages of all sources of the project, area by area."""
     found: list[Message] = []
-    for area in AREAS:
-        files = sorted(path for path in (sources / area).rglob("*") if path.is_file())
-        for path in files:
+    folders = {path.name for path in (root / "src").iterdir() if path.is_dir()}
+    for area in [*AREAS, *sorted(folders - AREAS.keys())]:
+        if area == "mpm_pygen":
+            for path in sorted((root / "mpm_pygen" / "src").rglob("*.py")):
+                found += python_messages(path)
+            continue
+        for path in sorted((root / "src" / area).rglob("*")):
             if re.search(r"\.[fF]90(\.in)?$", path.name):
                 found += messages_of(path, area)
-    return list(dict.fromkeys(found))
+    return [item for item in dict.fromkeys(found) if item.text.strip(f"{OPEN}: ")]
 
 
 def cell(text: str) -> str:
@@ -155,9 +177,9 @@ def messages_text(messages: list[Message]) -> str:
         "",
         "[Contents](../README.md) · [troubleshooting](../troubleshooting.md)",
         "",
-        "Every error and warning of the program and the way out that it prints in the next line, "
-        f"where {OPEN} stands for names, numbers and places. The status is that of the "
-        "program; it goes on after a warning.",
+        "Every error and warning of the program, and of mpm_pygen, and the way out that is printed "
+        f"in the next line, where {OPEN} stands for names, numbers and places. The status is that "
+        "of the program; it goes on after a warning.",
     ]
     area = ""
     for message in messages:
@@ -165,7 +187,7 @@ def messages_text(messages: list[Message]) -> str:
             area = message.area
             lines += [
                 "",
-                f"## {AREAS[area]}",
+                f"## {AREAS.get(area, area.capitalize())}",
                 "",
                 "| message | way out | status |",
                 "|---|---|---|",

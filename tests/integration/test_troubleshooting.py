@@ -12,7 +12,14 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs" / "manual"))
 
-from messages import Message, form, forms, messages_of, read_messages  # noqa: E402
+from messages import (  # noqa: E402
+    Message,
+    form,
+    forms,
+    messages_of,
+    python_messages,
+    read_messages,
+)
 
 PAGE = ROOT / "docs" / "troubleshooting.md"
 #: Sections whose messages are not those of the program.
@@ -22,7 +29,7 @@ OTHERS = ("How to read a message", "No message, but the result is wrong", "Build
 @pytest.fixture(scope="module")
 def messages() -> list[Message]:
     """Return the messages of the sources."""
-    return read_messages(ROOT / "src")
+    return read_messages(ROOT)
 
 
 def quoted() -> Iterator[str]:
@@ -56,3 +63,14 @@ def test_sources_are_read_as_meant(tmp_path: Path) -> None:
         Message("io", "no room (a, b) for …", "free some", "4"),
         Message("io", "look out", "", "warning"),
     ]
+
+
+def test_errors_of_the_package_are_read_as_meant(tmp_path: Path) -> None:
+    """Literals stay, what is put into them is …; other errors do not count."""
+    source = tmp_path / "x.py"
+    source.write_text(
+        "raise PygenError(f'no {name} ' f'in {place}{mark}')\n"
+        "raise PygenError('no file')\nraise ValueError('no number')\n"
+    )
+    texts = [message.text for message in python_messages(source)]
+    assert texts == ["no … in …", "no file"]
