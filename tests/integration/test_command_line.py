@@ -69,7 +69,7 @@ def test_help(mpm3d: Run, tmp_path: Path, option: str) -> None:
     assert (result.returncode, result.stderr) == (0, "")
     for word in (
         *("-c", "--check", "--list", "--describe", "--version", "--help"),
-        *("--threads", "--set", "-q", "-v", "exit status"),
+        *("--threads", "--max-memory", "--set", "-q", "-v", "exit status"),
     ):
         assert word in result.stdout, word
 
