@@ -1,6 +1,8 @@
 !> The command line of the program.
 module mpm_command_line
   use mpm_errors, only: err_usage, error_t, raise
+  use mpm_kinds, only: lp
+  use mpm_memory, only: parse_size
   use mpm_monitor, only: normal, quiet, verbose
   use mpm_strings, only: append_text, excerpt, nearest_name, string_t
   implicit none
@@ -21,6 +23,8 @@ module mpm_command_line
     type(string_t), allocatable :: overrides(:)
     !> Number of threads; 0 when not given.
     integer :: threads = 0
+    !> Most bytes that points and nodes may take; 0 for what the machine has.
+    integer(lp) :: memory_limit = 0
     !> How much is told of the run.
     integer :: verbosity = normal
   end type command_line_t
@@ -42,6 +46,8 @@ contains
            '       mpm3d --describe CLASS      purpose and properties of a class'//nl// &
            '       mpm3d --version | --help'//nl//nl// &
            'options: --threads N               number of threads'//nl// &
+           '         --max-memory SIZE         most memory of points and nodes, such as 8G;'//nl// &
+           '                                   unless given, what the machine has'//nl// &
            '         --set SECTION.KEY=VALUE   replace what the config says; may repeat;'//nl// &
            '                                   bodies and contacts: body.NAME.KEY=VALUE'//nl// &
            '         -q, -v                    say less, say more'//nl//nl// &
@@ -103,6 +109,9 @@ contains
       case ('--threads')
         call next_value(i, argument, 'a number', value, error)
         if (.not. allocated(error)) call read_threads(value, command%threads, error)
+      case ('--max-memory')
+        call next_value(i, argument, 'a size', value, error)
+        if (.not. allocated(error)) call read_memory(value, command%memory_limit, error)
       case ('--set')
         call next_value(i, argument, 'section.key=value', value, error)
         if (.not. allocated(error)) call append_text(command%overrides, value)
@@ -212,15 +221,31 @@ contains
     call raise(error, err_usage, '--threads '//excerpt(text)//' is not a number from 1 to 4096')
   end subroutine read_threads
 
+  !> A size of memory.
+  subroutine read_memory(text, bytes, error)
+    !> The argument.
+    character(*), intent(in) :: text
+    !> The size.
+    integer(lp), intent(out) :: bytes
+    !> Not a size.
+    type(error_t), allocatable, intent(inout) :: error
+    logical :: valid
+
+    call parse_size(text, bytes, valid)
+    if (valid) return
+    call raise(error, err_usage, '--max-memory '//excerpt(text)//' is not a size above 0', &
+               hint='a number of bytes, or for example 500M, 8G, 1.5T or 512MiB')
+  end subroutine read_memory
+
   !> An argument that means nothing.
   subroutine raise_unknown(argument, error)
     !> The argument.
     character(*), intent(in) :: argument
     !> The error.
     type(error_t), allocatable, intent(inout) :: error
-    character(10), parameter :: options(10) = &
-      [character(10) :: '--check', '--estimate', '--list', '--describe', '--version', '--help', &
-       '--threads', '--set', '--config', '--restart']
+    character(12), parameter :: options(11) = &
+      [character(12) :: '--check', '--estimate', '--list', '--describe', '--version', '--help', &
+       '--threads', '--max-memory', '--set', '--config', '--restart']
     type(string_t) :: known(size(options))
     character(:), allocatable :: hint
     integer :: i

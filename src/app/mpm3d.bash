@@ -4,7 +4,7 @@ _mpm3d() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
   local program=${COMP_WORDS[0]} options
   options='-c --config -r --restart --check --estimate --list --describe --version --help --threads
-           --set -q -v'
+           --max-memory --set -q -v'
   COMPREPLY=()
   case $previous in
     -c | --config)
@@ -25,6 +25,9 @@ _mpm3d() {
       ;;
     --threads)
       mapfile -t COMPREPLY < <(compgen -W "$(seq "$(nproc 2>/dev/null || echo 1)")" -- "$current")
+      ;;
+    --max-memory)
+      mapfile -t COMPREPLY < <(compgen -W '1G 2G 4G 8G 16G' -- "$current")
       ;;
     --set)
       mapfile -t COMPREPLY < <(compgen -W 'job. serializer. driver. solver. grid. body. contact. probe.' \

@@ -85,11 +85,13 @@ contains
     if (command%verbosity >= verbose) call clock%start(phase_setup)
     monitor%verbosity = command%verbosity
     if (len(command%checkpoint) > 0) then
-      call restart(command%checkpoint, command%overrides, command%threads, job, monitor, error)
+      call restart(command%checkpoint, command%overrides, command%threads, command%memory_limit, &
+                   job, monitor, error)
       if (allocated(error)) return
       job%model%clock = clock
     else
-      call configure(command%config, command%overrides, job, error)
+      call configure(command%config, command%overrides, job, error, &
+                     memory_limit=command%memory_limit)
       if (allocated(error)) return
       job%model%clock = clock
       if (command%threads > 0) job%model%threads = command%threads

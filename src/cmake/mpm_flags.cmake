@@ -5,6 +5,11 @@ if(MPM3D_NATIVE)
   list(APPEND release_flags -march=native)
 endif()
 set(debug_flags -O1 -g -fcheck=all -ffpe-trap=invalid,zero,overflow -finit-real=snan)
+# Errors that the run-time checks of Fortran do not see; the first one ends the program.
+if(MPM3D_SANITIZE)
+  list(APPEND debug_flags -fsanitize=address,undefined -fno-sanitize-recover=all
+    -fno-omit-frame-pointer)
+endif()
 
 add_library(mpm_flags INTERFACE)
 if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
@@ -13,6 +18,9 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
     "$<$<CONFIG:Release>:${release_flags}>"
     "$<$<CONFIG:Debug>:${debug_flags}>"
     $<$<BOOL:${MPM3D_WERROR}>:-Werror>)
+  if(MPM3D_SANITIZE)
+    target_link_options(mpm_flags INTERFACE -fsanitize=address,undefined)
+  endif()
 else()
   message(WARNING "mpm3d is tested with gfortran only; "
     "with ${CMAKE_Fortran_COMPILER_ID} CMake's default flags are used")

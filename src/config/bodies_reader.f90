@@ -7,6 +7,7 @@ module mpm_bodies_reader
   use mpm_document, only: section_t, value_t
   use mpm_errors, only: err_input, error_t, raise
   use mpm_grid, only: grid_t
+  use mpm_kinds, only: lp, wp
   use mpm_material_registry, only: create_material
   use mpm_nodes_registry, only: create_nodes
   use mpm_object_reader, only: class_of, lacks, properties_of
@@ -28,7 +29,7 @@ module mpm_bodies_reader
 contains
 
   !> Set up a body and its parts: points, nodes, material, boundary, then the body itself.
-  subroutine read_body(section, file, id, grid, body, error)
+  subroutine read_body(section, file, id, grid, memory_room, body, error)
     !> The section.
     type(section_t), intent(in) :: section
     !> The config.
@@ -37,6 +38,8 @@ contains
     integer, intent(in) :: id
     !> The grid.
     class(grid_t), intent(in) :: grid
+    !> Bytes that its points may take.
+    integer(lp), intent(in) :: memory_room
     !> The body.
     class(body_t), allocatable, intent(out) :: body
     !> The first thing wrong.
@@ -52,7 +55,7 @@ contains
     body%id = id
     call read_name(section, file, body%name, error)
     if (allocated(error)) return
-    call read_points(section, file, grid, body, error)
+    call read_points(section, file, grid, memory_room, body, error)
     if (allocated(error)) return
     call read_nodes(section, file, grid, body, error)
     if (allocated(error)) return
@@ -94,13 +97,15 @@ contains
   end subroutine read_name
 
   !> The points of a body.
-  subroutine read_points(section, file, grid, body, error)
+  subroutine read_points(section, file, grid, memory_room, body, error)
     !> The section.
     type(section_t), intent(in) :: section
     !> The config.
     character(*), intent(in) :: file
     !> The grid.
     class(grid_t), intent(in) :: grid
+    !> Bytes that the points may take.
+    integer(lp), intent(in) :: memory_room
     !> The body.
     class(body_t), intent(inout) :: body
     !> The first thing wrong.
@@ -114,6 +119,7 @@ contains
     if (allocated(error)) return
     call create_points(class%text, body%points, error)
     if (lacks(error, class)) return
+    body%points%memory_room = memory_room
     call body%points%describe(description)
     call properties_of(section, 'point-', 'props', description, grid%kin%sim_type, class, &
                        properties, error)
@@ -167,6 +173,7 @@ contains
     type(description_t) :: description
     type(properties_t) :: properties
     type(value_t) :: class
+    integer(lp) :: bytes
 
     call optional_class(section, file, 'material', class, error)
     if (allocated(error) .or. len(class%text) == 0) return
@@ -179,6 +186,11 @@ contains
     call body%material%init(grid%kin, properties, error)
     if (lacks(error, class)) return
     associate (points => body%points)
+      bytes = points%memory() + body%material%n_history*int(storage_size(1.0_wp)/8, lp)*points%n
+      if (bytes > points%memory_room) then
+        call points%claim(int(points%n, lp), bytes/points%n, error)
+        if (lacks(error, class)) return
+      end if
       deallocate (points%history)
       allocate (points%history(body%material%n_history, points%n))
       call body%material%start(points%n, points%x, points%mass, points%volume, points%history)

@@ -11,8 +11,9 @@ module mpm_configurator
   use mpm_errors, only: err_input, err_usage, error_t, raise
   use mpm_grid_registry, only: create_grid
   use mpm_job, only: job_t
-  use mpm_kinds, only: wp
+  use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: make_kinematics
+  use mpm_memory, only: memory_left
   use mpm_object_reader, only: class_of, lacks, properties_of
   use mpm_override, only: parse_override
   use mpm_parser, only: parse_text
@@ -38,13 +39,15 @@ module mpm_configurator
     [character(14) :: 'class', 'properties', 'int-properties', 'str-properties']
   !> Steps of a run that no machine would finish.
   real(wp), parameter :: most_steps = 1.0e15_wp
+  !> Bytes of a config, at most: there are 20 or more for each of its words.
+  integer(lp), parameter :: most_text = 64*1024*1024
   !> Keys of a contact.
   character(14), parameter :: contact_keys(5) = [object_keys, 'name          ']
 
 contains
 
   !> Build a job from a config.
-  subroutine configure(path, overrides, job, error, text)
+  subroutine configure(path, overrides, job, error, text, memory_limit)
     !> The config.
     character(*), intent(in) :: path
     !> Texts `section.key=value` that take the place of what the config says.
@@ -55,16 +58,19 @@ contains
     type(error_t), allocatable, intent(out) :: error
     !> Text of the config, when it is not to be read from the file.
     character(*), intent(in), optional :: text
+    !> Most bytes that points and nodes may take; 0 or left out for what the machine has.
+    integer(lp), intent(in), optional :: memory_limit
     type(document_t) :: document
     integer :: i
 
     job%config = path
+    if (present(memory_limit)) job%model%memory_limit = memory_limit
     job%checkpoints%config = path
     job%checkpoints%overrides = overrides
     if (present(text)) then
       job%checkpoints%text = text
     else
-      call read_whole_file(path, job%checkpoints%text, error)
+      call read_whole_file(path, job%checkpoints%text, error, most_text)
       if (allocated(error)) return
     end if
     call parse_text(job%checkpoints%text, path, document, error)
@@ -298,15 +304,18 @@ contains
     type(job_t), intent(inout) :: job
     !> The first thing wrong.
     type(error_t), allocatable, intent(out) :: error
+    integer(lp) :: used
     integer :: i, j, s
 
+    used = 0
     allocate (job%model%bodies(document%count_sections('body')))
     s = 0
     do i = 1, size(job%model%bodies)
       s = document%find_section('body', s)
       call read_body(document%sections(s), document%path, i - 1, job%model%grid, &
-                     job%model%bodies(i)%body, error)
+                     memory_left(job%model%memory_limit, used), job%model%bodies(i)%body, error)
       if (allocated(error)) return
+      used = used + job%model%bodies(i)%body%points%memory()
       do j = 1, i - 1
         if (job%model%bodies(j)%body%name == job%model%bodies(i)%body%name) then
           call raise(error, err_input, 'a second body named "'// &

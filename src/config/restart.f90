@@ -4,6 +4,7 @@ module mpm_restart
   use mpm_configurator, only: configure
   use mpm_errors, only: error_t
   use mpm_job, only: job_t
+  use mpm_kinds, only: lp
   use mpm_monitor, only: monitor_t
   use mpm_state, only: restore_state
   use mpm_strings, only: string_t, to_text
@@ -16,13 +17,15 @@ contains
   !> Configure and start a job as it was, and take back the state of the run.
   !!
   !! Nothing is written.
-  subroutine restart(path, overrides, threads, job, monitor, error)
+  subroutine restart(path, overrides, threads, memory_limit, job, monitor, error)
     !> The checkpoint.
     character(*), intent(in) :: path
     !> What to change, as texts of `--set`.
     type(string_t), intent(in) :: overrides(:)
     !> Number of threads; 0 for that of the config.
     integer, intent(in) :: threads
+    !> Most bytes that points and nodes may take; 0 for what the machine has.
+    integer(lp), intent(in) :: memory_limit
     !> The job, started.
     type(job_t), intent(out) :: job
     !> What is told of the run.
@@ -50,7 +53,7 @@ contains
       all(n + i)%text = overrides(i)%text
     end do
     if (.not. allocated(file%failure)) then
-      call configure(config, all, job, error, text)
+      call configure(config, all, job, error, text, memory_limit)
       if (.not. allocated(error)) then
         if (threads > 0) job%model%threads = threads
         call job%start(error)

@@ -217,6 +217,8 @@ contains
     nearest = ''
     best = huge(best)
     do i = 1, size(known)
+      ! The distance is no less than this; a name of any length must not take long.
+      if (abs(len(name) - len(known(i)%text)) > max(1, len(known(i)%text)/3)) cycle
       distance = edit_distance(lower_case(name), lower_case(known(i)%text))
       if (distance < best .and. distance <= max(1, len(known(i)%text)/3)) then
         best = distance

@@ -2,6 +2,7 @@
 module mpm_points_table
   use mpm_errors, only: err_input, error_t, raise
   use mpm_kinds, only: ip, lp, wp
+  use mpm_memory, only: size_text, way_to_more
   use mpm_number_parser, only: number_ok, number_too_large, parse_integer, parse_real, parse_special
   use mpm_strings, only: counted, excerpt, to_text
   use mpm_text_file, only: has_byte_order_mark, read_whole_file
@@ -38,7 +39,7 @@ contains
   !! The first line holds the number of rows. Numbers are separated by blanks and tabs; blank lines
   !! do not count. There are no comments.
   subroutine read_points_table(path, n_columns_allowed, n_rows, n_columns, table, error, &
-                               line_of_row)
+                               line_of_row, memory_room, bytes_per_row)
     !> The file.
     character(*), intent(in) :: path
     !> Row widths that make sense.
@@ -53,17 +54,27 @@ contains
     type(error_t), allocatable, intent(out) :: error
     !> Line of each row in the file, from 1, for messages. (n_rows)
     integer, allocatable, intent(out), optional :: line_of_row(:)
+    !> Bytes that there are for the text, the table and what is made of it.
+    integer(lp), intent(in), optional :: memory_room
+    !> Bytes of what is made of a row.
+    integer(lp), intent(in), optional :: bytes_per_row
     type(reader_t) :: reader
     integer, allocatable :: lines(:)
-    integer(lp) :: n
+    integer(lp) :: n, room, row_bytes
 
     n_rows = 0
     n_columns = 0
+    room = huge(room)
+    if (present(memory_room)) room = memory_room
+    row_bytes = 0
+    if (present(bytes_per_row)) row_bytes = bytes_per_row
     reader%path = trim(path)
-    call read_whole_file(path, reader%text, error)
+    call read_whole_file(path, reader%text, error, room)
     if (.not. allocated(error)) call read_count(reader, n, error)
     if (.not. allocated(error)) call check_count(reader, n, error)
     if (.not. allocated(error)) call choose_width(reader, n_columns_allowed, n_columns, error)
+    if (allocated(error)) return
+    call check_room(reader, n, n_columns, room - len(reader%text, lp), row_bytes, error)
     if (allocated(error)) return
     call make_room(reader, n, n_columns, table, lines, error)
     if (allocated(error)) return
@@ -168,6 +179,29 @@ contains
     call reader%fail('the file ends after '//to_text(n_present)//' of '//promised//' points', &
                      error, hint='its first line says how many there are')
   end subroutine fail_short
+
+  !> Refuse more rows than the memory can hold.
+  subroutine check_room(reader, n, n_columns, room, bytes_per_row, error)
+    !> The file, for messages.
+    type(reader_t), intent(in) :: reader
+    !> Number of rows in the first line of the file.
+    integer(lp), intent(in) :: n
+    !> Numbers in each row.
+    integer, intent(in) :: n_columns
+    !> Bytes that there are.
+    integer(lp), intent(in) :: room
+    !> Bytes of what is made of a row, besides the table.
+    integer(lp), intent(in) :: bytes_per_row
+    !> `err_input`.
+    type(error_t), allocatable, intent(inout) :: error
+    integer(lp) :: bytes
+
+    bytes = bytes_per_row + n_columns*(storage_size(1.0_wp)/8) + storage_size(n_columns)/8
+    if (n <= room/bytes) return
+    call raise(error, err_input, counted(n, 'point')//' need '//size_text(n*bytes)//' of memory, &
+               &more than there is ('//size_text(max(0_lp, room))//')', file=reader%path, &
+               hint='use fewer points, or '//way_to_more())
+  end subroutine check_room
 
   !> Allocate the table.
   subroutine make_room(reader, n, n_columns, table, lines, error)

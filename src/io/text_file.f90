@@ -3,7 +3,7 @@ module mpm_text_file
   use mpm_errors, only: err_input, error_t, raise
   use mpm_files, only: directory_of, file_exists, is_directory, is_readable, join_path
   use mpm_kinds, only: lp
-  use mpm_strings, only: excerpt
+  use mpm_strings, only: excerpt, to_text
   implicit none
   private
   public :: find_input_file, has_byte_order_mark, read_whole_file
@@ -14,13 +14,15 @@ module mpm_text_file
 contains
 
   !> Read a file into one text; an empty file gives an empty text.
-  subroutine read_whole_file(path, text, error)
+  subroutine read_whole_file(path, text, error, most)
     !> The file; a pipe is read to its end.
     character(*), intent(in) :: path
     !> All bytes of the file.
     character(:), allocatable, intent(out) :: text
     !> `err_input`: missing, a folder, unreadable or too large for the memory.
     type(error_t), allocatable, intent(out) :: error
+    !> Most bytes that the text may have.
+    integer(lp), intent(in), optional :: most
     integer :: unit, status
     integer(lp) :: size_in_bytes
     character(256) :: reason
@@ -34,13 +36,29 @@ contains
       return
     end if
     inquire (file=path, size=size_in_bytes)
-    if (size_in_bytes > 0) then
+    if (is_above(size_in_bytes, most)) then
+      call raise(error, err_input, 'the file has '//to_text(size_in_bytes)//' bytes, more than the &
+                 &memory that there is ('//to_text(most)//')', file=path)
+    else if (size_in_bytes > 0) then
       call read_sized(unit, path, size_in_bytes, text, error)
     else
       call read_unsized(unit, path, text, error)
     end if
     close (unit)
   end subroutine read_whole_file
+
+  !> Whether a size is above a limit, if there is one.
+  pure function is_above(size_in_bytes, most)
+    !> The size.
+    integer(lp), intent(in) :: size_in_bytes
+    !> The limit.
+    integer(lp), intent(in), optional :: most
+    !> True when it is.
+    logical :: is_above
+
+    is_above = .false.
+    if (present(most)) is_above = size_in_bytes > most
+  end function is_above
 
   !> Say why a file cannot be read, as far as this is known before opening it.
   subroutine check_readable(path, error)

@@ -105,55 +105,10 @@ contains
 
     bytes = 0
     do i = 1, size(self%model%bodies)
-      bytes = bytes + body_memory(self%model, i)
+      associate (body => self%model%bodies(i)%body)
+        bytes = bytes + body%points%memory() + body%nodes%memory()
+      end associate
     end do
   end function job_memory
-
-  !> Bytes held by the points and nodes of one body.
-  pure function body_memory(model, i) result(bytes)
-    !> The model.
-    type(model_t), intent(in) :: model
-    !> Position of the body.
-    integer, intent(in) :: i
-    !> Bytes.
-    integer(lp) :: bytes
-    integer(lp) :: bits
-
-    associate (points => model%bodies(i)%body%points, nodes => model%bodies(i)%body%nodes)
-      bits = storage_size(points%mass, lp)* &
-             (size(points%mass, kind=lp) + size(points%volume, kind=lp) &
-              + size(points%extent, kind=lp) + size(points%x, kind=lp) &
-              + size(points%displacement, kind=lp) + size(points%velocity, kind=lp) &
-              + size(points%stress, kind=lp))
-      if (allocated(points%gradient)) then
-        bits = bits + storage_size(points%gradient, lp)*size(points%gradient, kind=lp)
-      end if
-      if (allocated(points%load)) then
-        bits = bits + storage_size(points%load, lp)*size(points%load, kind=lp)
-      end if
-      if (allocated(points%affine)) then
-        bits = bits + storage_size(points%affine, lp)*size(points%affine, kind=lp)
-      end if
-      if (allocated(nodes%gain)) then
-        bits = bits + storage_size(nodes%gain, lp)*size(nodes%gain, kind=lp)
-      end if
-      if (allocated(nodes%remapped)) then
-        bits = bits + storage_size(nodes%remapped, lp)*size(nodes%remapped, kind=lp)
-      end if
-      if (allocated(points%reference_volume)) then
-        bits = bits + storage_size(points%mass, lp)*size(points%mass, kind=lp)
-      end if
-      if (allocated(points%smoothed_volume)) then
-        bits = bits + storage_size(points%mass, lp)*size(points%mass, kind=lp)
-      end if
-      if (allocated(points%domains)) bits = bits + 8_lp*points%domains%memory()
-      bits = bits + storage_size(points%id, lp)*3_lp*size(points%id, kind=lp)
-      bits = bits + storage_size(nodes%mass, lp)* &
-             (size(nodes%mass, kind=lp) + size(nodes%momentum, kind=lp) &
-              + size(nodes%force, kind=lp) + size(nodes%velocity, kind=lp) &
-              + size(nodes%increment, kind=lp))
-    end associate
-    bytes = bits/8_lp
-  end function body_memory
 
 end module mpm_job

@@ -3,6 +3,7 @@ module mpm_job_report
   use mpm_console, only: put_line
   use mpm_job, only: job_t
   use mpm_kinds, only: lp, wp
+  use mpm_memory, only: available_memory, size_text
   use mpm_strings, only: counted, to_text
   use mpm_window, only: window_t
   implicit none
@@ -47,7 +48,8 @@ contains
       points = points + job%model%bodies(i)%body%points%n
     end do
     call line('memory:  '//to_text(real(memory, wp)/1.0e6_wp, 3)//' MB for points and nodes, '// &
-              to_text(nint(real(memory, wp)/real(max(1, points), wp)))//' bytes a point')
+              to_text(nint(real(memory, wp)/real(max(1, points), wp)))//' bytes a point, of '// &
+              limit_text(job%model%memory_limit, memory))
     text = ' s, dt = '//to_text(job%model%dt)//' s, '//counted(steps, 'step')
     if (.not. exact) then
       text = ' s, dt at most '//to_text(job%model%dt)//' s, about '//counted(steps, 'step')
@@ -68,6 +70,22 @@ contains
       end if
     end associate
   end subroutine report_job
+
+  !> How much memory points and nodes may take.
+  function limit_text(limit, used) result(text)
+    !> Most bytes in all; 0 for what the machine has.
+    integer(lp), intent(in) :: limit
+    !> Bytes in use.
+    integer(lp), intent(in) :: used
+    !> Size and where it comes from.
+    character(:), allocatable :: text
+
+    if (limit > 0) then
+      text = size_text(limit)//' (--max-memory)'
+    else
+      text = size_text(available_memory() + used)//' (of this machine)'
+    end if
+  end function limit_text
 
   !> A line for each body.
   subroutine report_bodies(job, fixed_step)

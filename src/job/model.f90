@@ -31,6 +31,8 @@ module mpm_model
     real(wp) :: last_dt = 0.0_wp
     !> Steps made.
     integer(lp) :: step = 0
+    !> Most bytes that points and nodes may take; 0 for what the machine has.
+    integer(lp) :: memory_limit = 0
     !> The grid.
     class(grid_t), allocatable :: grid
     !> The bodies in the order of the config.

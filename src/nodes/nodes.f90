@@ -5,7 +5,7 @@ module mpm_nodes
   use mpm_field_writer, only: field_writer_t
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
-  use mpm_memory, only: available_memory
+  use mpm_memory, only: memory_left
   use mpm_properties, only: properties_t
   use mpm_window, only: window_t
   implicit none
@@ -38,6 +38,8 @@ module mpm_nodes
     !> Velocity of a second mapping in a step, from which strain rates are formed; not allocated
     !! unless there is one. [m/s] (nvel, nn)
     real(wp), allocatable :: remapped(:, :)
+    !> Most bytes that the arrays may take; 0 for what the machine has.
+    integer(lp) :: memory_limit = 0
   contains
     !> Set up the nodes of a body.
     procedure(init_i), deferred :: init
@@ -45,6 +47,8 @@ module mpm_nodes
     procedure(write_fields_i), deferred :: write_fields
     !> Move the window; grow the arrays if they are too short.
     procedure :: place => nodes_place
+    !> Bytes that the nodes hold.
+    procedure :: memory => nodes_memory
   end type nodes_t
 
   abstract interface
@@ -83,7 +87,7 @@ contains
     class(nodes_t), intent(inout) :: self
     !> The new window.
     type(window_t), intent(in) :: window
-    !> 0, or the bytes that the window needs and the machine does not have; the arrays stay then.
+    !> 0, or the bytes that the window needs and may not have; the arrays stay then.
     integer(lp), intent(out), optional :: bytes_missing
     integer(lp) :: bytes
     integer :: capacity, status
@@ -98,7 +102,7 @@ contains
     bytes = window%size()*int(4*self%kin%nvel + 1, lp)*(storage_size(1.0_wp)/8)
     bytes = bytes + bytes/8
     if (present(bytes_missing)) then
-      if (bytes > available_memory()) then
+      if (bytes > memory_left(self%memory_limit, 0_lp)) then
         bytes_missing = bytes
         return
       end if
@@ -125,5 +129,22 @@ contains
     self%velocity = 0.0_wp
     self%increment = 0.0_wp
   end subroutine nodes_place
+
+  !> Bytes that the nodes hold.
+  pure function nodes_memory(self) result(bytes)
+    !> The nodes.
+    class(nodes_t), intent(in) :: self
+    !> Bytes.
+    integer(lp) :: bytes
+    integer(lp) :: reals
+
+    bytes = 0
+    if (.not. allocated(self%mass)) return
+    reals = size(self%mass, kind=lp) + size(self%momentum, kind=lp) + size(self%force, kind=lp) &
+            + size(self%velocity, kind=lp) + size(self%increment, kind=lp)
+    if (allocated(self%gain)) reals = reals + size(self%gain, kind=lp)
+    if (allocated(self%remapped)) reals = reals + size(self%remapped, kind=lp)
+    bytes = reals*(storage_size(1.0_wp)/8)
+  end function nodes_memory
 
 end module mpm_nodes

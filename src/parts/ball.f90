@@ -23,6 +23,7 @@ module mpm_ball
     procedure, nopass :: describe => ball_describe
     procedure :: init => ball_init
     procedure :: contains => ball_contains
+    procedure :: bounds => ball_bounds
   end type ball_t
 
 contains
@@ -77,5 +78,19 @@ contains
 
     inside = norm2(x - self%centre(:size(x))) <= self%radius
   end function ball_contains
+
+  !> A box around the ball.
+  pure subroutine ball_bounds(self, lower, upper)
+    !> The part.
+    class(ball_t), intent(in) :: self
+    !> Lower corner. [m]
+    real(wp), intent(out) :: lower(3)
+    !> Upper corner. [m]
+    real(wp), intent(out) :: upper(3)
+
+    ! Halves do not overflow.
+    lower = 2.0_wp*max(-0.5_wp*huge(1.0_wp), 0.5_wp*self%centre - 0.5_wp*self%radius)
+    upper = 2.0_wp*min(0.5_wp*huge(1.0_wp), 0.5_wp*self%centre + 0.5_wp*self%radius)
+  end subroutine ball_bounds
 
 end module mpm_ball

@@ -24,6 +24,7 @@ module mpm_box
     procedure, nopass :: describe => box_describe
     procedure :: init => box_init
     procedure :: contains => box_contains
+    procedure :: bounds => box_bounds
   end type box_t
 
 contains
@@ -85,5 +86,18 @@ contains
 
     inside = all(self%lower(:size(x)) <= x .and. x <= self%upper(:size(x)))
   end function box_contains
+
+  !> The box itself.
+  pure subroutine box_bounds(self, lower, upper)
+    !> The part.
+    class(box_t), intent(in) :: self
+    !> Lower corner. [m]
+    real(wp), intent(out) :: lower(3)
+    !> Upper corner. [m]
+    real(wp), intent(out) :: upper(3)
+
+    lower = self%lower
+    upper = self%upper
+  end subroutine box_bounds
 
 end module mpm_box

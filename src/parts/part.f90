@@ -16,6 +16,8 @@ module mpm_part
     procedure(init_i), deferred :: init
     !> Whether a position is in the part.
     procedure(contains_i), deferred :: contains
+    !> A box around the part.
+    procedure :: bounds => part_bounds
   end type part_t
 
   !> A part in a list of parts.
@@ -53,5 +55,22 @@ module mpm_part
       logical :: inside
     end function contains_i
   end interface
+
+contains
+
+  !> Most parts have no bounds.
+  pure subroutine part_bounds(self, lower, upper)
+    !> The part.
+    class(part_t), intent(in) :: self
+    !> Lower corner, at or below every position of the part. [m]
+    real(wp), intent(out) :: lower(3)
+    !> Upper corner, at or above every position of the part. [m]
+    real(wp), intent(out) :: upper(3)
+
+    associate (unused => self)
+    end associate
+    lower = -huge(1.0_wp)
+    upper = huge(1.0_wp)
+  end subroutine part_bounds
 
 end module mpm_part

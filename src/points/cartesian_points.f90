@@ -10,6 +10,7 @@ module mpm_cartesian_points
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
   use mpm_part_list, only: part_list_t
+  use mpm_points, only: bytes_per_point
   use mpm_properties, only: properties_t
   use mpm_strings, only: to_text
   implicit none
@@ -30,6 +31,7 @@ module mpm_cartesian_points
     procedure, nopass :: describe => cartesian_points_describe
     procedure :: init => cartesian_points_init
     procedure :: write_table => cartesian_points_write_table
+    procedure, private :: make_table
   end type cartesian_points_t
 
   !> Where points can be, and what they are like.
@@ -101,7 +103,7 @@ contains
     call find_point_file(point_file, config_file, path, error)
     if (.not. allocated(error)) call text%open(path, known_keys, error)
     if (.not. allocated(error)) call read_lattice(text, grid%kin, lattice, error)
-    if (.not. allocated(error)) call make_table(text, lattice, table, line_of_row, error)
+    if (.not. allocated(error)) call self%make_table(text, lattice, table, line_of_row, error)
     if (allocated(error)) return
     call self%init_from_table(grid, table, path, line_of_row, error)
     if (allocated(error) .or. len(text%out_file) == 0) return
@@ -175,7 +177,9 @@ contains
   end subroutine check_size
 
   !> Rows of a points table for all positions that lie in a part.
-  subroutine make_table(text, lattice, table, line_of_row, error)
+  subroutine make_table(self, text, lattice, table, line_of_row, error)
+    !> The points, not yet made.
+    class(cartesian_points_t), intent(in) :: self
     !> The generator text.
     type(generator_text_t), intent(in) :: text
     !> The lattice.
@@ -186,10 +190,19 @@ contains
     integer, allocatable, intent(out) :: line_of_row(:)
     !> No point, or too many for the memory.
     type(error_t), allocatable, intent(out) :: error
-    integer :: n, status
+    integer(lp) :: bytes
+    integer :: n, most, status
 
-    call visit_positions(lattice, n)
-    if (n == 0) then
+    bytes = bytes_per_point(lattice%kin) + full_width(lattice%kin)*(storage_size(1.0_wp)/8) &
+            + storage_size(n)/8
+    most = int(min(self%memory_room/bytes, huge(1) - 1_lp))
+    call visit_positions(lattice, most, n)
+    if (n > most) then
+      call self%claim(int(n, lp), bytes, error)
+      error%message = 'more than '//error%message
+      error%file = text%document%path
+      return
+    else if (n == 0) then
       call raise(error, err_input, 'no point of the lattice lies in a part', &
                  file=text%document%path, hint='the lattice fills the box from 0 to Lx: check '// &
                  'the parts against it, or use more points')
@@ -202,32 +215,36 @@ contains
                  file=text%document%path)
       return
     end if
-    call visit_positions(lattice, n, table, line_of_row)
+    call visit_positions(lattice, most, n, table, line_of_row)
   end subroutine make_table
 
   !> Count the positions that lie in a part, the first direction slowest, and fill their rows.
-  subroutine visit_positions(lattice, n, table, line_of_row)
+  subroutine visit_positions(lattice, most, n, table, line_of_row)
     !> The lattice.
     type(lattice_t), intent(in) :: lattice
-    !> Number of positions in parts.
+    !> Number of positions in parts above which no more are counted.
+    integer, intent(in) :: most
+    !> Number of positions in parts; one above `most` when there are more.
     integer, intent(out) :: n
     !> Mass, volume, position, velocity, active. (columns, n)
     real(wp), intent(inout), optional :: table(:, :)
     !> Line of the part of each point. (n)
     integer, intent(inout), optional :: line_of_row(:)
     real(wp) :: x(size(lattice%spacing)), volume
-    integer :: i, j, k, part, at(3)
+    integer :: i, j, k, part, at(3), first(3), last(3)
 
     volume = product(lattice%spacing)
+    call reach(lattice, first, last)
     n = 0
-    do i = 0, lattice%n(1) - 1
-      do j = 0, lattice%n(2) - 1
-        do k = 0, lattice%n(3) - 1
+    do i = first(1), last(1)
+      do j = first(2), last(2)
+        do k = first(3), last(3)
           at = [i, j, k]
           x = (real(at(:size(x)), wp) + 0.5_wp)*lattice%spacing
           part = lattice%parts%find(x)
           if (part == 0) cycle
           n = n + 1
+          if (n > most) return
           if (.not. (present(table) .and. present(line_of_row))) cycle
           table(:, n) = 0.0_wp
           table(1, n) = lattice%density*volume
@@ -239,5 +256,36 @@ contains
       end do
     end do
   end subroutine visit_positions
+
+  !> Positions that can lie in a part, so that a small part of a large lattice is found fast.
+  pure subroutine reach(lattice, first, last)
+    !> The lattice.
+    type(lattice_t), intent(in) :: lattice
+    !> Lowest index in each direction.
+    integer, intent(out) :: first(3)
+    !> Highest index in each direction.
+    integer, intent(out) :: last(3)
+    real(wp) :: lower(3), upper(3), low(3), high(3)
+    integer :: i, d
+
+    lower = huge(1.0_wp)
+    upper = -huge(1.0_wp)
+    do i = 1, size(lattice%parts%slots)
+      call lattice%parts%slots(i)%part%bounds(low, high)
+      lower = min(lower, low)
+      upper = max(upper, high)
+    end do
+    first = 0
+    last = lattice%n - 1
+    do d = 1, size(lattice%spacing)
+      associate (length => lattice%n(d)*lattice%spacing(d))
+        ! One position more on each side than rounding can take away.
+        low(d) = min(max(lower(d), 0.0_wp), length)
+        high(d) = min(max(upper(d), 0.0_wp), length)
+        first(d) = int(max(low(d)/lattice%spacing(d) - 2.0_wp, 0.0_wp))
+        last(d) = int(min(high(d)/lattice%spacing(d) + 2.0_wp, real(last(d), wp)))
+      end associate
+    end do
+  end subroutine reach
 
 end module mpm_cartesian_points

@@ -7,7 +7,7 @@ module mpm_default_points
   use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
-  use mpm_points, only: points_t
+  use mpm_points, only: bytes_per_point, points_t
   use mpm_points_table, only: read_points_table
   use mpm_properties, only: properties_t
   use mpm_strings, only: to_text
@@ -90,7 +90,8 @@ contains
     if (allocated(error)) return
     widths = [full_width(grid%kin), 3 + 2*grid%kin%dim]
     n_widths = merge(1, 2, widths(1) == widths(2))
-    call read_points_table(path, widths(:n_widths), n_rows, n_columns, table, error, line_of_row)
+    call read_points_table(path, widths(:n_widths), n_rows, n_columns, table, error, line_of_row, &
+                           self%memory_room, bytes_per_point(grid%kin))
     if (allocated(error)) return
     call self%init_from_table(grid, table, path, line_of_row, error)
   end subroutine default_points_init

@@ -10,9 +10,10 @@ module mpm_improved_quadrature_points
   use mpm_grid, only: grid_t
   use mpm_kinds, only: lp, wp
   use mpm_level_set, only: level_set_t
+  use mpm_memory, only: way_to_more
   use mpm_point_cells, only: point_cells_t
   use mpm_point_exchange, only: add_reserve
-  use mpm_points, only: points_restore, points_save
+  use mpm_points, only: bytes_per_point, points_restore, points_save
   use mpm_properties, only: properties_t
   use mpm_quadrature_settings, only: add_quadrature_properties, avoid_a_void, &
                                      newton_shift, no_correction, quadrature_settings_t, &
@@ -131,7 +132,10 @@ contains
       end if
     end if
     allocate (self%grid, source=grid)
-    if (self%settings%rule == avoid_a_void) call self%take_reserve()
+    if (self%settings%rule == avoid_a_void) then
+      call self%take_reserve(properties, error)
+      if (allocated(error)) return
+    end if
     if (self%settings%quadrature > 0) then
       allocate (self%domains)
       call self%domains%init(self%kin, self%settings%quadrature, self%settings%scale, self%volume, &
@@ -148,13 +152,26 @@ contains
   end subroutine improved_quadrature_points_adopt
 
   !> Put points in reserve behind those of the table.
-  subroutine take_reserve(self)
+  subroutine take_reserve(self, properties, error)
     !> The points, read.
     class(improved_quadrature_points_t), intent(inout) :: self
+    !> Checked properties, for the place of a bad one.
+    type(properties_t), intent(in) :: properties
+    !> More points than there is memory for.
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: refusal
     integer :: n, n_more
 
     n = self%n
-    n_more = ceiling(min(self%settings%buffer*real(n, wp), real(huge(1) - n, wp)))
+    ! The buffer may be so large that its product with n has no number.
+    n_more = ceiling(min(min(self%settings%buffer, real(huge(1), wp))*real(n, wp), &
+                         real(huge(1) - n, wp)))
+    call self%claim(int(n, lp) + n_more, bytes_per_point(self%kin), refusal)
+    if (allocated(refusal)) then
+      call properties%reject('buffer', 'with those in reserve '//refusal%message, error, &
+                             'use a smaller buffer, or '//way_to_more())
+      return
+    end if
     allocate (self%may_return(n + n_more))
     self%may_return = .true.
     ! What the table says to be inactive stays so.

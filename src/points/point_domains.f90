@@ -74,6 +74,8 @@ module mpm_point_domains
     procedure :: factors => point_domains_factors
     !> Find the nodes that points reach.
     procedure :: place => point_domains_place
+    !> Size of the lists of these nodes.
+    procedure :: count_lists => point_domains_count_lists
     !> List these nodes with the values and gradients of their functions.
     procedure :: make_lists => point_domains_make_lists
     !> Let the domains of a block of points follow the grid.
@@ -86,6 +88,7 @@ module mpm_point_domains
     procedure :: save => point_domains_save
     !> Take them back.
     procedure :: restore => point_domains_restore
+    procedure, private :: entries_of
     procedure, private :: get_corners
     procedure, private :: span
     procedure, private :: is_box
@@ -404,6 +407,44 @@ contains
     end associate
   end subroutine place_block
 
+  !> Size of the lists of the nodes of all points.
+  pure subroutine point_domains_count_lists(self, stencil, entries, bytes)
+    !> The domains, placed.
+    class(point_domains_t), intent(in) :: self
+    !> Basis, not averaged.
+    type(stencil_t), intent(in) :: stencil
+    !> Entries of the lists.
+    integer(lp), intent(out) :: entries
+    !> Bytes of their arrays.
+    integer(lp), intent(out) :: bytes
+    integer :: p
+
+    entries = 0
+    do p = 1, size(self%is_plain)
+      entries = entries + self%entries_of(stencil, p)
+    end do
+    bytes = entries*(storage_size(1)/8 + (self%dim + 1)*(storage_size(1.0_wp)/8))
+    ! Lists are made longer than they have to be.
+    bytes = bytes + bytes/8
+  end subroutine point_domains_count_lists
+
+  !> Entries of a point: the nodes on the box of all corners, unless the corners themselves have
+  !! fewer.
+  pure function entries_of(self, stencil, slot) result(n)
+    !> The domains, placed.
+    class(point_domains_t), intent(in) :: self
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Slot of the point.
+    integer, intent(in) :: slot
+    !> Their number, at most.
+    integer :: n
+    integer(lp) :: on_box
+
+    on_box = product(int(self%counts(:, slot), lp))
+    n = int(min(on_box, int((2*natural_width(stencil%kind))**self%dim, lp)))
+  end function entries_of
+
   !> List the nodes of all points with the values and gradients of their functions.
   subroutine point_domains_make_lists(self, kin, stencil, threads, n, x, window)
     !> The domains, placed.
@@ -420,13 +461,11 @@ contains
     real(wp), intent(in) :: x(self%dim, n)
     !> Window of the node arrays; holds all nodes of the points.
     type(window_t), intent(in) :: window
-    integer :: entries(n), most, step, a, p
+    integer :: entries(n), step, a, p
 
     self%window = window
-    ! Nodes on the box of all corners, unless the corners themselves have fewer.
-    most = (2*natural_width(stencil%kind))**self%dim
     do p = 1, n
-      entries(p) = min(most, product(self%counts(:, p)))
+      entries(p) = self%entries_of(stencil, p)
     end do
     call self%list%resize(self%dim, window%size(), entries)
     step = block_size/merge(2, 2**self%dim, self%is_box())
@@ -467,7 +506,8 @@ contains
     call corner_functions(stencil, corners*(b - a + 1), y, first, w, dw)
     do p = a, b
       k = corners*(p - a)
-      if (.not. self%is_plain(p) .and. product(self%counts(:, p)) > self%list%count(p)) then
+      if (.not. self%is_plain(p) .and. &
+          product(int(self%counts(:, p), lp)) > self%list%count(p)) then
         call self%list_corners(stencil, p, x(:, p))
       else
         call self%list_point(stencil, p, corners, first(:, k + 1:k + corners), w(values*k + 1), &

@@ -6,6 +6,7 @@ module mpm_points
   use mpm_grid, only: grid_t
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
+  use mpm_memory, only: size_text, way_to_more
   use mpm_digest, only: digest_t
   use mpm_document, only: value_t
   use mpm_point_domains, only: point_domains_t
@@ -15,10 +16,11 @@ module mpm_points
   use mpm_threads, only: useful_threads
   use mpm_stencil, only: outside, stencil_keys, stencil_t
   use mpm_store, only: store_t
+  use mpm_strings, only: counted
   use mpm_window, only: window_t
   implicit none
   private
-  public :: points_restore, points_save, points_t
+  public :: bytes_per_point, points_restore, points_save, points_t
 
   !> Mass of a node whose velocity leaves out internal forces, relative to the points' mean mass.
   !!
@@ -43,6 +45,8 @@ module mpm_points
     character(:), allocatable :: file
     !> Line in `file` of the point with the largest box.
     integer :: widest_line = 0
+    !> Bytes that the points may take when they are made.
+    integer(lp) :: memory_room = huge(1_lp)
     !> Position in the points file, from 1. (n)
     integer, allocatable :: id(:)
     !> Mass. [kg] (n)
@@ -128,6 +132,10 @@ module mpm_points
     procedure :: slots => points_slots
     !> Take the digest of the points as they are.
     procedure :: sign => points_sign
+    !> See that points have room in memory before they are made.
+    procedure :: claim => points_claim
+    !> Bytes that the points hold.
+    procedure :: memory => points_memory
     procedure :: save => points_save
     procedure :: restore => points_restore
     !> The nodes that the stencils of the points reach.
@@ -415,6 +423,60 @@ contains
       slot(self%id(p)) = p
     end do
   end function points_slots
+
+  !> Bytes of a point in the arrays that all points have.
+  pure function bytes_per_point(kin) result(bytes)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Bytes.
+    integer(lp) :: bytes
+
+    bytes = (storage_size(1.0_wp)/8)*int(3 + kin%dim + 2*kin%nvel + kin%nstress, lp) &
+            + (storage_size(1)/8)*3_lp
+  end function bytes_per_point
+
+  !> See that points have room in memory before they are made.
+  subroutine points_claim(self, n, bytes_each, error)
+    !> The points.
+    class(points_t), intent(in) :: self
+    !> Their number, or that of points in addition.
+    integer(lp), intent(in) :: n
+    !> Bytes that each of them takes.
+    integer(lp), intent(in) :: bytes_each
+    !> `err_input`, without a place, when there is no room.
+    type(error_t), allocatable, intent(out) :: error
+
+    if (n <= self%memory_room/bytes_each) return
+    call raise(error, err_input, counted(n, 'point')//' need '// &
+               size_text(min(n, huge(n)/bytes_each)*bytes_each)//' of memory, more than there &
+               &is ('//size_text(self%memory_room)//')', &
+               hint='use fewer points, or '//way_to_more())
+  end subroutine points_claim
+
+  !> Bytes that the points hold.
+  pure function points_memory(self) result(bytes)
+    !> The points.
+    class(points_t), intent(in) :: self
+    !> Bytes.
+    integer(lp) :: bytes
+    integer(lp) :: reals
+
+    reals = 0
+    bytes = 0
+    if (.not. allocated(self%mass)) return
+    reals = size(self%mass, kind=lp) + size(self%volume, kind=lp) + size(self%extent, kind=lp) &
+            + size(self%x, kind=lp) + size(self%displacement, kind=lp) &
+            + size(self%velocity, kind=lp) + size(self%stress, kind=lp) &
+            + size(self%history, kind=lp)
+    if (allocated(self%gradient)) reals = reals + size(self%gradient, kind=lp)
+    if (allocated(self%load)) reals = reals + size(self%load, kind=lp)
+    if (allocated(self%affine)) reals = reals + size(self%affine, kind=lp)
+    if (allocated(self%reference_volume)) reals = reals + size(self%reference_volume, kind=lp)
+    if (allocated(self%smoothed_volume)) reals = reals + size(self%smoothed_volume, kind=lp)
+    if (allocated(self%shifted)) reals = reals + size(self%shifted, kind=lp)
+    bytes = (reals*storage_size(1.0_wp, lp) + 3*size(self%id, kind=lp)*storage_size(1, lp))/8
+    if (allocated(self%domains)) bytes = bytes + self%domains%memory()
+  end function points_memory
 
   !> Take the digest of the points as they are, so that a restart knows them again.
   subroutine points_sign(self)

@@ -8,7 +8,7 @@ module mpm_vtk_frames
   use mpm_file_system, only: delete_leftovers
   use mpm_files, only: delete_file, join_path, make_directories
   use mpm_kinds, only: lp, wp
-  use mpm_memory, only: available_memory
+  use mpm_memory, only: memory_left, size_text, way_to_more
   use mpm_model, only: model_t
   use mpm_number_text, only: default_digits
   use mpm_properties, only: properties_t
@@ -169,7 +169,7 @@ contains
     if (.not. self%with_nodes) return
     whole = model%grid%whole()
     n_bytes = least_node_bytes*whole%size()
-    if (n_bytes <= available_memory()) return
+    if (n_bytes <= memory_left(model%memory_limit, 0_lp)) return
     call raise(error, err_input, 'the grid has '//to_text(whole%size())//' nodes, whose frames &
                &would take more than '//to_text(real(n_bytes, wp)/1.0e9_wp, 3)// &
                ' GB each, more than the memory of this machine', hint='use larger cells, or nodes &

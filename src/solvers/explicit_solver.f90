@@ -4,7 +4,7 @@ module mpm_explicit_solver
   use mpm_description, only: description_t
   use mpm_errors, only: err_input, error_t
   use mpm_explicit_steps, only: locate_points, map_to_nodes, update_nodes
-  use mpm_kinds, only: wp
+  use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
   use mpm_phase_clock, only: phase_contact, phase_nodes
   use mpm_point_blocks, only: fit_points
@@ -179,11 +179,30 @@ contains
 
     do i = 1, size(model%bodies)
       if (.not. model%bodies(i)%body%active) cycle
+      call limit_nodes(model, i)
       call map_to_nodes(model%bodies(i)%body, model%threads, error, model%clock)
       if (allocated(error)) return
       call self%transfer%filter(model%bodies(i)%body, model%threads)
     end do
   end subroutine explicit_solver_map
+
+  !> Tell the nodes of a body how much memory the other bodies and its points leave.
+  subroutine limit_nodes(model, i)
+    !> The model.
+    type(model_t), intent(inout) :: model
+    !> Position of the body.
+    integer, intent(in) :: i
+    integer(lp) :: used
+    integer :: j
+
+    if (model%memory_limit == 0) return
+    used = 0
+    do j = 1, size(model%bodies)
+      used = used + model%bodies(j)%body%points%memory()
+      if (j /= i) used = used + model%bodies(j)%body%nodes%memory()
+    end do
+    model%bodies(i)%body%nodes%memory_limit = max(1_lp, model%memory_limit - used)
+  end subroutine limit_nodes
 
   !> Add the forces of contacts and walls, and update all nodes.
   subroutine explicit_solver_push(self, model, dt)

@@ -6,6 +6,7 @@ module mpm_explicit_steps
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
   use mpm_material, only: material_t
+  use mpm_memory, only: memory_left, size_text, way_to_more
   use mpm_model, only: model_t
   use mpm_nodes, only: nodes_t
   use mpm_phase_clock, only: phase_clock_t, phase_g2p, phase_material, phase_nodes, phase_p2g, &
@@ -90,12 +91,15 @@ contains
     call body%nodes%place(window, bytes_missing)
     if (bytes_missing > 0) then
       call raise(error, err_simulation, 'body "'//body%name//'" reaches over '// &
-                 to_text(window%size())//' nodes, which need '// &
-                 to_text(real(bytes_missing, wp)/1.0e9_wp, 3)// &
-                 ' GB of memory, more than there is', &
-                 hint='memory is for the box around the points of a body: use larger cells, or &
-                 &put points that lie far apart into bodies of their own')
+                 to_text(window%size())//' nodes, which need '//size_text(bytes_missing)// &
+                 ' of memory, more than there is', hint='memory is for the box around the points &
+                 &of a body: use larger cells, put points that lie far apart into bodies of their &
+                 &own, or '//way_to_more())
       return
+    end if
+    if (allocated(body%points%domains)) then
+      call check_lists(body, window, error)
+      if (allocated(error)) return
     end if
     if (present(clock)) call clock%enter(phase_sort)
     call body%points%refresh_order(threads)
@@ -119,6 +123,27 @@ contains
       if (allocated(points%load)) call add_loads(points, window, threads, nodes%force)
     end associate
   end subroutine map_to_nodes
+
+  !> See that the lists of the nodes of all points have room in memory.
+  subroutine check_lists(body, window, error)
+    !> The body, its domains and nodes placed.
+    class(body_t), intent(in) :: body
+    !> Window of the node arrays.
+    type(window_t), intent(in) :: window
+    !> They have none.
+    type(error_t), allocatable, intent(out) :: error
+    integer(lp) :: entries, bytes, room
+
+    associate (domains => body%points%domains, nodes => body%nodes)
+      call domains%count_lists(body%points%stencil, entries, bytes)
+      room = memory_left(nodes%memory_limit, nodes%memory()) + domains%list%memory()
+    end associate
+    if (entries < huge(1) .and. bytes <= room) return
+    call raise(error, err_simulation, 'the domains of the points of body "'//body%name// &
+               '" reach '//to_text(entries)//' times a node of '//to_text(window%size())// &
+               ', which needs '//size_text(bytes)//' of memory, more than there is', &
+               hint='use fewer points, larger cells, smaller domains, or '//way_to_more())
+  end subroutine check_lists
 
   !> Add the body forces that differ from point to point: f_i += sum_p m_p N_i(x_p) b_p.
   !!

@@ -54,6 +54,15 @@ from scene import Run
         pytest.param(
             ["-c", "scene.cfg", "--threads", "99999"], USAGE, "not a number", id="threads-many"
         ),
+        pytest.param(
+            ["-c", "scene.cfg", "--max-memory"], USAGE, "needs a size", id="memory-nothing"
+        ),
+        pytest.param(
+            ["-c", "scene.cfg", "--max-memory", "0"], USAGE, "not a size above 0", id="memory-0"
+        ),
+        pytest.param(
+            ["-c", "scene.cfg", "--max-memory", "8 G"], USAGE, "not a size above 0", id="memory-two"
+        ),
         pytest.param(["-c", "scene.cfg", "--set"], USAGE, "--set needs", id="set-nothing"),
         pytest.param(
             ["-c", "scene.cfg", "--set", "dt=1"],

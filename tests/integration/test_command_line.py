@@ -70,7 +70,7 @@ def test_help(mpm3d: Run, tmp_path: Path, option: str) -> None:
     assert (result.returncode, result.stderr) == (0, "")
     for word in (
         *("-c", "--check", "--estimate", "--list", "--describe", "--version", "--help"),
-        *("--threads", "--set", "-q", "-v", "exit status", "examples"),
+        *("--threads", "--max-memory", "--set", "-q", "-v", "exit status", "examples"),
     ):
         assert word in result.stdout, word
 
