@@ -227,7 +227,9 @@ def judge(r: Results) -> list[Finding]:
         findings += [
             Finding("order of e_u", r.order("e_u_l2"), least, 2.15, 2.0, second),
             Finding("order of e_u, linf", r.order("e_u_linf"), least, 2.15, 2.0, second),
-            Finding("order of e_v half a step earlier", r.order("e_w_l2"), least, 2.15, 2.0, second),
+            Finding(
+                "order of e_v half a step earlier", r.order("e_w_l2"), least, 2.15, 2.0, second
+            ),
         ]
     for p, m in r:
         label = f"{p.cells} cells"
