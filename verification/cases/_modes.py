@@ -174,11 +174,15 @@ def orders(r: Results, wave_number: Callable[[Parameters], float]) -> list[Findi
         "linear functions give all points of a cell one stress: order 1; more by errors of second "
         "order from kh = 0.2 on"
     )
+    least = 1.9
+    if r.first.mapping == "cubic":
+        # The light nodes next to walls take the share 0.44 h/L of the dispersion away.
+        least, second = 1.75, second + "; 0.15 for the walls of cubic functions, of order h (kh)**2"
     wanted = [
-        ("order of e_u", "e_u_l2", 0.4, 1.9, 2.1, 2.0, second),
-        ("order of e_u, l1", "e_u_l1", 0.4, 1.9, 2.1, 2.0, second),
-        ("order of e_u, linf", "e_u_linf", 0.4, 1.9, 2.1, 2.0, second),
-        ("order of e_v half a step earlier", "e_w_l2", 0.4, 1.9, 2.1, 2.0, second),
+        ("order of e_u", "e_u_l2", 0.4, least, 2.1, 2.0, second),
+        ("order of e_u, l1", "e_u_l1", 0.4, least, 2.1, 2.0, second),
+        ("order of e_u, linf", "e_u_linf", 0.4, least, 2.1, 2.0, second),
+        ("order of e_v half a step earlier", "e_w_l2", 0.4, least, 2.1, 2.0, second),
         ("order of e_s in the middle of cells", "e_c_l2", 0.4, 1.85, 2.1, 2.0, second),
     ]
     if stress_constant(r.first.ppc, basis=r.first.mapping) < 1e-12:

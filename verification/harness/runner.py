@@ -156,7 +156,7 @@ def time_loop(program: Path, folder: Path, point_steps: float) -> dict[str, floa
 
 
 def time_of_children() -> float:
-    """Return the processor time of all programs that this process has run. [s]"""
+    """Return the processor time of all programs that this process has run, in seconds."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
