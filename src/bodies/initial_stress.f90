@@ -22,7 +22,7 @@ contains
     integer :: first, last, bad
 
     call need_material(body, error)
-    if (allocated(error)) return
+    if (allocated(error) .or. body%points%is_revived) return
     associate (points => body%points)
       do first = 1, points%n, block_size
         last = min(first + block_size - 1, points%n)
@@ -50,7 +50,7 @@ contains
     integer :: first, last, bad
 
     call need_material(body, error)
-    if (allocated(error)) return
+    if (allocated(error) .or. body%points%is_revived) return
     target = spread(stress, 2, block_size)
     associate (points => body%points)
       do first = 1, points%n, block_size

@@ -14,6 +14,8 @@ module mpm_bodies_reader
   use mpm_points_registry, only: create_points
   use mpm_properties, only: properties_t
   use mpm_section_reader, only: single_value
+  use mpm_store, only: store_t
+  use mpm_strings, only: to_text
   implicit none
   private
   public :: read_body
@@ -29,7 +31,7 @@ module mpm_bodies_reader
 contains
 
   !> Set up a body and its parts: points, nodes, material, boundary, then the body itself.
-  subroutine read_body(section, file, id, grid, memory_room, body, error)
+  subroutine read_body(section, file, id, grid, memory_room, body, error, store)
     !> The section.
     type(section_t), intent(in) :: section
     !> The config.
@@ -44,6 +46,8 @@ contains
     class(body_t), allocatable, intent(out) :: body
     !> The first thing wrong.
     type(error_t), allocatable, intent(out) :: error
+    !> A checkpoint with points for all bodies.
+    class(store_t), intent(inout), optional :: store
     type(description_t) :: description
     type(properties_t) :: properties
     type(value_t) :: class
@@ -55,7 +59,7 @@ contains
     body%id = id
     call read_name(section, file, body%name, error)
     if (allocated(error)) return
-    call read_points(section, file, grid, memory_room, body, error)
+    call read_points(section, file, grid, memory_room, body, error, store)
     if (allocated(error)) return
     call read_nodes(section, file, grid, body, error)
     if (allocated(error)) return
@@ -97,7 +101,7 @@ contains
   end subroutine read_name
 
   !> The points of a body.
-  subroutine read_points(section, file, grid, memory_room, body, error)
+  subroutine read_points(section, file, grid, memory_room, body, error, store)
     !> The section.
     type(section_t), intent(in) :: section
     !> The config.
@@ -110,6 +114,8 @@ contains
     class(body_t), intent(inout) :: body
     !> The first thing wrong.
     type(error_t), allocatable, intent(out) :: error
+    !> A checkpoint with points for all bodies.
+    class(store_t), intent(inout), optional :: store
     type(description_t) :: description
     type(properties_t) :: properties
     type(value_t) :: class, point_file
@@ -126,6 +132,14 @@ contains
     if (allocated(error)) return
     call single_value(section, file, 'point-file', point_file, found, error)
     if (allocated(error)) return
+    if (present(store)) then
+      call store%enter('body_'//to_text(body%id))
+      call store%enter('points')
+      call body%points%keep(grid%kin, store, error)
+      call store%leave()
+      call store%leave()
+      if (lacks(error, class)) return
+    end if
     call body%points%init(grid, properties, point_file, file, error)
     if (lacks(error, class)) return
   end subroutine read_points

@@ -23,6 +23,7 @@ module mpm_configurator
   use mpm_section_reader, only: check_keys, single_value
   use mpm_serializer_registry, only: create_serializer
   use mpm_solver_registry, only: create_solver
+  use mpm_store, only: store_t
   use mpm_strings, only: excerpt, nearest_name, string_t, to_text
   use mpm_text_file, only: read_whole_file
   implicit none
@@ -47,7 +48,7 @@ module mpm_configurator
 contains
 
   !> Build a job from a config.
-  subroutine configure(path, overrides, job, error, text, memory_limit)
+  subroutine configure(path, overrides, job, error, text, memory_limit, store)
     !> The config.
     character(*), intent(in) :: path
     !> Texts `section.key=value` that take the place of what the config says.
@@ -60,6 +61,8 @@ contains
     character(*), intent(in), optional :: text
     !> Most bytes that points and nodes may take; 0 or left out for what the machine has.
     integer(lp), intent(in), optional :: memory_limit
+    !> A checkpoint, from which points are taken in place of their files.
+    class(store_t), intent(inout), optional :: store
     type(document_t) :: document
     integer :: i
 
@@ -90,7 +93,7 @@ contains
     if (allocated(error)) return
     call read_objects(document, job, error)
     if (allocated(error)) return
-    call read_all_bodies(document, job, error)
+    call read_all_bodies(document, job, error, store)
     if (allocated(error)) return
     call read_contacts(document, job, error)
     if (allocated(error)) return
@@ -297,13 +300,15 @@ contains
   end subroutine read_objects
 
   !> The bodies in the order of the config.
-  subroutine read_all_bodies(document, job, error)
+  subroutine read_all_bodies(document, job, error, store)
     !> The config.
     type(document_t), intent(in) :: document
     !> The job: the bodies are set up.
     type(job_t), intent(inout) :: job
     !> The first thing wrong.
     type(error_t), allocatable, intent(out) :: error
+    !> A checkpoint, from which points are taken in place of their files.
+    class(store_t), intent(inout), optional :: store
     integer(lp) :: used
     integer :: i, j, s
 
@@ -313,7 +318,8 @@ contains
     do i = 1, size(job%model%bodies)
       s = document%find_section('body', s)
       call read_body(document%sections(s), document%path, i - 1, job%model%grid, &
-                     memory_left(job%model%memory_limit, used), job%model%bodies(i)%body, error)
+                     memory_left(job%model%memory_limit, used), job%model%bodies(i)%body, &
+                     error, store)
       if (allocated(error)) return
       used = used + job%model%bodies(i)%body%points%memory()
       do j = 1, i - 1

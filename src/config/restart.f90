@@ -2,12 +2,14 @@
 module mpm_restart
   use mpm_checkpoint_file, only: checkpoint_file_t
   use mpm_configurator, only: configure
-  use mpm_errors, only: error_t
+  use mpm_document, only: value_t
+  use mpm_errors, only: err_input, error_t, raise
   use mpm_job, only: job_t
   use mpm_kinds, only: lp
   use mpm_monitor, only: monitor_t
+  use mpm_override, only: parse_override
   use mpm_state, only: restore_state
-  use mpm_strings, only: string_t, to_text
+  use mpm_strings, only: excerpt, string_t, to_text
   implicit none
   private
   public :: restart
@@ -51,9 +53,11 @@ contains
     end do
     do i = 1, size(overrides)
       all(n + i)%text = overrides(i)%text
+      call check_override(overrides(i)%text, error)
+      if (allocated(error)) exit
     end do
-    if (.not. allocated(file%failure)) then
-      call configure(config, all, job, error, text, memory_limit)
+    if (.not. allocated(file%failure) .and. .not. allocated(error)) then
+      call configure(config, all, job, error, text, memory_limit, file)
       if (.not. allocated(error)) then
         if (threads > 0) job%model%threads = threads
         call job%start(error)
@@ -64,8 +68,26 @@ contains
         call monitor%say('restart: '//path//', saved by '//program)
       end if
     end if
-    if (allocated(file%failure)) allocate (error, source=file%failure)
+    if (allocated(file%failure)) then
+      if (allocated(error)) deallocate (error)
+      allocate (error, source=file%failure)
+    end if
     call file%close()
   end subroutine restart
+
+  !> Refuse another points file: the points are those of the checkpoint.
+  subroutine check_override(text, error)
+    !> `section.key=value`.
+    character(*), intent(in) :: text
+    !> `err_input`.
+    type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: selector, key
+    type(value_t), allocatable :: values(:)
+
+    call parse_override(text, selector, key, values, error)
+    if (allocated(error) .or. key /= 'point-file') return
+    call raise(error, err_input, '--set '//excerpt(text, 80)//': the points are those of the &
+               &checkpoint', hint='a run with other points starts anew: mpm3d -c FILE')
+  end subroutine check_override
 
 end module mpm_restart

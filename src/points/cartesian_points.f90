@@ -100,6 +100,10 @@ contains
 
     associate (unused => properties)
     end associate
+    if (allocated(self%kept)) then
+      call self%revive(grid%kin)
+      return
+    end if
     call find_point_file(point_file, config_file, path, error)
     if (.not. allocated(error)) call text%open(path, known_keys, error)
     if (.not. allocated(error)) call read_lattice(text, grid%kin, lattice, error)

@@ -86,6 +86,10 @@ contains
 
     associate (unused => properties)
     end associate
+    if (allocated(self%kept)) then
+      call self%revive(grid%kin)
+      return
+    end if
     call find_point_file(point_file, config_file, path, error)
     if (allocated(error)) return
     widths = [full_width(grid%kin), 3 + 2*grid%kin%dim]

@@ -132,7 +132,9 @@ contains
       end if
     end if
     allocate (self%grid, source=grid)
-    if (self%settings%rule == avoid_a_void) then
+    if (self%settings%rule == avoid_a_void .and. self%is_revived) then
+      allocate (self%may_return(self%n), source=.true.)
+    else if (self%settings%rule == avoid_a_void) then
       call self%take_reserve(properties, error)
       if (allocated(error)) return
     end if

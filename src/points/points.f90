@@ -7,6 +7,7 @@ module mpm_points
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
   use mpm_memory, only: size_text, way_to_more
+  use mpm_description, only: description_t
   use mpm_digest, only: digest_t
   use mpm_document, only: value_t
   use mpm_point_domains, only: point_domains_t
@@ -27,6 +28,20 @@ module mpm_points
   !! The force of a point on a node does not vanish with the point's weight there, so that the
   !! acceleration of a node that a point has just reached has no bound.
   real(wp), parameter :: relative_cutoff = 1.0e-9_wp
+
+  !> Points of a checkpoint, from which points are set up in place of a file.
+  type :: kept_points_t
+    !> Number of points, and of those inside the grid.
+    integer :: n = 0, n_inside = 0
+    !> Positions in the points file. (n)
+    integer, allocatable :: id(:)
+    !> Masses [kg], volumes [m3] and half sides of the boxes [m]. (n)
+    real(wp), allocatable :: mass(:), volume(:), extent(:)
+    !> Positions [m] (dim, n) and velocities [m/s] (nvel, n).
+    real(wp), allocatable :: x(:, :), velocity(:, :)
+    !> Digest of the points as they were read.
+    character(:), allocatable :: digest
+  end type kept_points_t
 
   !> Material points as arrays, component first.
   !!
@@ -105,8 +120,12 @@ module mpm_points
     integer :: n_changed = 0
     !> Points whose key changed since the arrays were sorted.
     integer :: n_drifted = 0
-    !> Digest of the points as they were read; empty until `sign` is called.
+    !> Digest of the points as they were read; not allocated until `sign` is called.
     character(:), allocatable :: digest
+    !> Points of a checkpoint for `init`; not allocated when there are none.
+    type(kept_points_t), allocatable :: kept
+    !> Whether they were taken in place of a file.
+    logical :: is_revived = .false.
   contains
     !> Read or make the points.
     procedure(init_i), deferred :: init
@@ -136,6 +155,10 @@ module mpm_points
     procedure :: claim => points_claim
     !> Bytes that the points hold.
     procedure :: memory => points_memory
+    !> Look for points of this class in a checkpoint.
+    procedure :: keep => points_keep
+    !> Take them in place of those of a file.
+    procedure :: revive => points_revive
     procedure :: save => points_save
     procedure :: restore => points_restore
     !> The nodes that the stencils of the points reach.
@@ -484,11 +507,73 @@ contains
     class(points_t), intent(inout) :: self
     type(digest_t) :: digest
 
+    if (self%is_revived) return
     call digest%add(self%mass)
     call digest%add(self%volume)
     call digest%add_columns(self%x)
     self%digest = digest%text()
   end subroutine points_sign
+
+  !> Look for points of this class in a checkpoint.
+  !!
+  !! What is not there, or of another class, is left to the end of the restart, which tells of it.
+  subroutine points_keep(self, kin, store, error)
+    !> The points, before `init`.
+    class(points_t), intent(inout) :: self
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> The checkpoint, at the points of the body.
+    class(store_t), intent(inout) :: store
+    !> More points than there is memory for.
+    type(error_t), allocatable, intent(out) :: error
+    type(description_t) :: description
+    character(:), allocatable :: class
+
+    call self%describe(description)
+    call store%get('class', class)
+    if (allocated(store%failure) .or. class /= description%name) return
+    allocate (self%kept)
+    associate (kept => self%kept)
+      call store%get('n', kept%n)
+      call self%claim(int(kept%n, lp), bytes_per_point(kin), error)
+      if (allocated(error)) return
+      call store%get('n_inside', kept%n_inside)
+      call store%get('id', kept%id)
+      call store%get('mass', kept%mass)
+      call store%get('volume', kept%volume)
+      call store%get('extent', kept%extent)
+      call store%get('x', kept%x)
+      call store%get('velocity', kept%velocity)
+      call store%get('digest', kept%digest)
+      if (.not. allocated(store%failure)) then
+        if (size(kept%x, 1) == kin%dim .and. size(kept%velocity, 1) == kin%nvel) return
+      end if
+    end associate
+    deallocate (self%kept)
+  end subroutine points_keep
+
+  !> Take the points of a checkpoint in place of those of a file.
+  !!
+  !! They are set up as they were saved; `restore` adds the rest when the run has been started.
+  subroutine points_revive(self, kin)
+    !> The points, with `kept` points.
+    class(points_t), intent(inout) :: self
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    type(kept_points_t), allocatable :: kept
+
+    call move_alloc(self%kept, kept)
+    call self%allocate(kin, kept%n)
+    self%n_inside = kept%n_inside
+    call move_alloc(kept%id, self%id)
+    call move_alloc(kept%mass, self%mass)
+    call move_alloc(kept%volume, self%volume)
+    call move_alloc(kept%extent, self%extent)
+    call move_alloc(kept%x, self%x)
+    call move_alloc(kept%velocity, self%velocity)
+    call move_alloc(kept%digest, self%digest)
+    self%is_revived = .true.
+  end subroutine points_revive
 
   !> Save all arrays in storage order.
   !!

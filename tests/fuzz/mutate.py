@@ -41,6 +41,11 @@ def make_input(seeds: Seeds, seed: int, index: int) -> tuple[str, bytes]:
     kind = rng.choices(list(KINDS), weights=list(KINDS.values()))[0]
     ending = kind if kind in seeds.texts else f"{rng.randint(1, 5)}.{kind}"
     text = rng.choice(seeds.texts[ending])
+    if rng.random() < 0.3:
+        # Numbers alone: most of such inputs are read to the end.
+        for _ in range(1 + int(rng.expovariate(1.0))):
+            text = "".join(new_number(rng, TOKEN.findall(text), seeds, ending))
+        return ending, text.encode()
     if rng.random() < 0.75:
         text = change_words(rng, text, seeds, ending)
     data = text.encode("utf-8", "surrogateescape")

@@ -8,6 +8,7 @@
 !!
 !! For each one line is printed: exit code, CPU time in seconds, and the path.
 program read_inputs
+  use, intrinsic :: ieee_exceptions, only: ieee_set_halting_mode, ieee_usual
   use mpm_configurator, only: configure
   use mpm_errors, only: err_input, err_usage, error_t
   use mpm_job, only: job_t
@@ -24,6 +25,8 @@ program read_inputs
   real(wp) :: start, end
   integer :: code, status
 
+  ! Numbers may overflow, as they may in a Release build; what comes of it must do no harm.
+  call ieee_set_halting_mode(ieee_usual, .false.)
   do
     read (*, '(a)', iostat=status) line
     if (status /= 0) exit
