@@ -7,7 +7,8 @@ module mpm_sort
 
 contains
 
-  !> Smallest and largest first node of the stencils of points inside the grid.
+  !> Smallest and largest first node of the stencils of points inside the grid; on a mesh the lowest
+  !! and highest node of their cells.
   pure subroutine base_bounds(stencil, n, key, lo, hi)
     !> Basis.
     type(stencil_t), intent(in) :: stencil
@@ -23,6 +24,16 @@ contains
 
     lo = huge(1)
     hi = -1
+    if (allocated(stencil%mesh)) then
+      previous = outside
+      do p = 1, n
+        if (key(p) == previous .or. key(p) == outside) cycle
+        previous = key(p)
+        lo = [min(lo(1), stencil%mesh%span(1, key(p)) - 1), 0, 0]
+        hi = [max(hi(1), stencil%mesh%span(2, key(p)) - 1), 0, 0]
+      end do
+      return
+    end if
     if (stencil%dim == 1) then
       low = huge(1)
       high = -1
@@ -49,7 +60,7 @@ contains
   !> Order points by cell, x fastest, and find where each row of cells begins.
   !!
   !! The sort is stable, so the order depends on the storage order alone. A row is one layer of
-  !! cells in the last direction of the grid.
+  !! cells in the last direction of the grid; a mesh is one row.
   pure subroutine sort_by_cell(stencil, n, key, lo, hi, order, row_offset)
     !> Basis.
     type(stencil_t), intent(in) :: stencil
@@ -69,6 +80,13 @@ contains
     integer :: base(3, block_size)
     integer :: cells(3), first, nb, j, c, total, count, rows, row_size
 
+    if (allocated(stencil%mesh)) then
+      call sort_by_key(n, key, order)
+      if (allocated(row_offset)) deallocate (row_offset)
+      allocate (row_offset(0:1))
+      row_offset = [0, n]
+      return
+    end if
     cells = hi - lo + 1
     allocate (begin(0:product(cells) - 1), cell(n))
     begin = 0
@@ -97,6 +115,33 @@ contains
       order(begin(cell(j))) = j
     end do
   end subroutine sort_by_cell
+
+  !> Order points by their keys; a stable sort.
+  pure subroutine sort_by_key(n, key, order)
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Keys. (n)
+    integer, intent(in) :: key(n)
+    !> Slots of the points in the order of their keys. (n)
+    integer, intent(out) :: order(n)
+    integer, allocatable :: begin(:)
+    integer :: p, k, total, count
+
+    allocate (begin(minval(key):maxval(key)), source=0)
+    do p = 1, n
+      begin(key(p)) = begin(key(p)) + 1
+    end do
+    total = 0
+    do k = lbound(begin, 1), ubound(begin, 1)
+      count = begin(k)
+      begin(k) = total
+      total = total + count
+    end do
+    do p = 1, n
+      begin(key(p)) = begin(key(p)) + 1
+      order(begin(key(p))) = p
+    end do
+  end subroutine sort_by_key
 
   !> Cells of points counted from the lower corner of their bounding box.
   pure subroutine local_cells(n, base, lo, cells, cell)
