@@ -9,6 +9,7 @@ module mpm_box_faces
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
   use mpm_line_integrals, only: line_integral, line_moment, smoothing
+  use mpm_mesh_grid, only: mesh_grid_t
   use mpm_nodes, only: nodes_t
   use mpm_window, only: intersect, window_t
   implicit none
@@ -40,6 +41,11 @@ module mpm_box_faces
     logical :: periodic(3) = .false.
     !> Half the variance of the kernel that turns hats into the basis. [cells^2]
     real(wp) :: smoothing(3) = 0.0_wp
+    !> Nodes of the faces of the box around a mesh, face by face, from 0; not allocated on Cartesian
+    !! grids.
+    integer, allocatable :: node(:)
+    !> Entries of `node` up to each face. (0:n)
+    integer, allocatable :: before(:)
   contains
     !> Take the box from the grid.
     procedure :: init => box_faces_init
@@ -59,6 +65,7 @@ module mpm_box_faces
     procedure :: mark => box_faces_mark
     !> Set components of a nodal field to a value on a face.
     procedure :: set => box_faces_set
+    procedure, private :: list_nodes
   end type box_faces_t
 
 contains
@@ -84,7 +91,7 @@ contains
   end function is_lower
 
   !> Take the box from the grid.
-  subroutine box_faces_init(self, grid, class_name, error)
+  subroutine box_faces_init(self, grid, class_name, error, of_mesh)
     !> The faces.
     class(box_faces_t), intent(inout) :: self
     !> The grid.
@@ -93,7 +100,12 @@ contains
     character(*), intent(in) :: class_name
     !> The grid is not Cartesian.
     type(error_t), allocatable, intent(out) :: error
+    !> The faces of the box around a mesh will do: only `fix`, `set` and `mark` are used.
+    logical, intent(in), optional :: of_mesh
+    logical :: any_grid
 
+    any_grid = .false.
+    if (present(of_mesh)) any_grid = of_mesh
     select type (grid)
     class is (cartesian_grid_t)
       self%kin = grid%kin
@@ -104,11 +116,39 @@ contains
       self%upper = grid%upper
       self%periodic = grid%periodic
       self%smoothing = smoothing(grid%kind, grid%lambda)
+    class is (mesh_grid_t)
+      if (any_grid) then
+        call self%list_nodes(grid)
+      else
+        call raise(error, err_input, 'the boundary class '//class_name//' needs a Cartesian grid', &
+                   hint='on a mesh use GeneralCustomBoundary, CartesianBox or CartesianSmoothBox')
+      end if
     class default
       call raise(error, err_input, 'the boundary class '//class_name//' needs a Cartesian grid', &
                  hint='its walls are the faces of a box; use a Cartesian grid or another boundary')
     end select
   end subroutine box_faces_init
+
+  !> Take the box around a mesh and the nodes on it.
+  subroutine list_nodes(self, grid)
+    !> The faces.
+    class(box_faces_t), intent(inout) :: self
+    !> The grid.
+    class(mesh_grid_t), intent(in) :: grid
+    integer :: face, i
+
+    self%kin = grid%kin
+    self%n = 2*grid%kin%dim
+    call grid%bounds(self%lower, self%upper)
+    allocate (self%before(0:self%n), source=0)
+    allocate (self%node(0))
+    do face = 1, self%n
+      self%node = [self%node, pack([(i - 1, i=1, grid%mesh%n_nodes)], &
+                                   [(grid%mesh%on_box(i, axis_of(face), is_lower(face)), &
+                                     i=1, grid%mesh%n_nodes)])]
+      self%before(face) = size(self%node)
+    end do
+  end subroutine list_nodes
 
   !> Nodes of a face inside a window; empty when there are none.
   pure function box_faces_part(self, face, window) result(part)
@@ -235,6 +275,17 @@ contains
     type(window_t) :: part
     integer :: hi(3), i, j, k, n
 
+    if (allocated(self%node)) then
+      do i = self%before(face - 1) + 1, self%before(face)
+        if (.not. nodes%window%holds([self%node(i), 0, 0])) cycle
+        n = nodes%window%index([self%node(i), 0, 0])
+        nodes%velocity(first:last, n) = 0.0_wp
+        nodes%momentum(first:last, n) = 0.0_wp
+        nodes%force(first:last, n) = 0.0_wp
+        nodes%increment(first:last, n) = 0.0_wp
+      end do
+      return
+    end if
     if (self%periodic(axis_of(face))) return
     part = self%part(face, nodes%window)
     hi = part%hi()
@@ -270,6 +321,13 @@ contains
     type(window_t) :: part
     integer :: hi(3), i, j, k
 
+    if (allocated(self%node)) then
+      do i = self%before(face - 1) + 1, self%before(face)
+        if (.not. window%holds([self%node(i), 0, 0])) cycle
+        field(first:last, window%index([self%node(i), 0, 0])) = value
+      end do
+      return
+    end if
     if (self%periodic(axis_of(face))) return
     part = self%part(face, window)
     hi = part%hi()

@@ -42,6 +42,8 @@ contains
                           '    boundary-class = "CartesianBox"')
     call description%add_note('The faces are those of the grid, wherever its lower corner is; &
                               &mpm_3d takes coordinate 0 as the lower face.')
+    call description%add_note('On a mesh the faces are those of the box around it: nodes on other &
+                              &sides are free.')
     call description%add_note('TYPE 4: the axis r = 0 is a face like the others, so that the body &
                               &can''t move along it or turn on it; with CartesianSmoothBox or &
                               &CartesianBoxCustom it can.')
@@ -59,12 +61,12 @@ contains
     class(points_t), intent(inout) :: points
     !> Checked properties: the class has none.
     type(properties_t), intent(in) :: properties
-    !> The grid is not Cartesian.
+    !> A grid without a box.
     type(error_t), allocatable, intent(out) :: error
 
     associate (unused => points, unused_properties => properties)
     end associate
-    call self%faces%init(grid, 'CartesianBox', error)
+    call self%faces%init(grid, 'CartesianBox', error, of_mesh=.true.)
   end subroutine cartesian_box_init
 
   !> Hold the nodes of all faces.

@@ -42,6 +42,8 @@ contains
                           '    boundary-class = "CartesianSmoothBox"')
     call description%add_note('The faces are those of the grid, wherever its lower corner is; &
                               &mpm_3d takes coordinate 0 as the lower face.')
+    call description%add_note('On a mesh the faces are those of the box around it: nodes on other &
+                              &sides are free.')
     call description%add_note('The third component of TYPE 4 and 5 is held on the axis r = 0 only: &
                               &there radial velocity and swirl are 0, as they must be (mpm_3d: &
                               &swirl is free there).')
@@ -59,12 +61,12 @@ contains
     class(points_t), intent(inout) :: points
     !> Checked properties: the class has none.
     type(properties_t), intent(in) :: properties
-    !> The grid is not Cartesian.
+    !> A grid without a box.
     type(error_t), allocatable, intent(out) :: error
 
     associate (unused => points, unused_properties => properties)
     end associate
-    call self%faces%init(grid, 'CartesianSmoothBox', error)
+    call self%faces%init(grid, 'CartesianSmoothBox', error, of_mesh=.true.)
   end subroutine cartesian_smooth_box_init
 
   !> Hold the nodes of all faces.

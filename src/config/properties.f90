@@ -55,6 +55,8 @@ module mpm_properties
     procedure :: strings => properties_strings
     !> Whether the config gives the property.
     procedure :: given => properties_given
+    !> The config that gives the property.
+    procedure :: file_of => properties_file_of
     !> Report a bad value at its place in the config.
     procedure :: reject => properties_reject
     !> Position of a property.
@@ -541,6 +543,21 @@ contains
     given = .false.
     if (i > 0) given = self%items(i)%given
   end function properties_given
+
+  !> The config that gives a property, or that of its object.
+  pure function properties_file_of(self, name) result(path)
+    !> The properties.
+    class(properties_t), intent(in) :: self
+    !> Name in the description.
+    character(*), intent(in) :: name
+    !> The path; empty when there is none.
+    character(:), allocatable :: path
+    integer :: i
+
+    i = self%find(name)
+    path = ''
+    if (i > 0) path = self%items(i)%file
+  end function properties_file_of
 
   !> Report a value that the class can't take, at its place in the config.
   pure subroutine properties_reject(self, name, message, error, hint)

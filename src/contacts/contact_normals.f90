@@ -109,7 +109,7 @@ contains
           levelled = normal(:, here)
           do d = 1, stencil%dim
             if (stencil%periodic(d)) cycle
-            if (node(d) == 0 .or. node(d) == stencil%n_cells(d)) levelled(d) = 0.0_wp
+            if (on_face(stencil, d, node)) levelled(d) = 0.0_wp
           end do
           if (may_vanish .or. norm2(levelled) > tiny_normal*norm2(normal(:, here))) then
             normal(:, here) = levelled
@@ -118,6 +118,24 @@ contains
       end do
     end do
   end subroutine level_at_faces
+
+  !> Whether a node is on a face of the grid across a direction; of a mesh on that of its box.
+  pure function on_face(stencil, d, node)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> The direction.
+    integer, intent(in) :: d
+    !> Grid indices, from 0.
+    integer, intent(in) :: node(3)
+    !> Whether it is.
+    logical :: on_face
+
+    if (allocated(stencil%mesh)) then
+      on_face = stencil%mesh%on_box(node(1) + 1, d)
+    else
+      on_face = node(d) == 0 .or. node(d) == stencil%n_cells(d)
+    end if
+  end function on_face
 
   !> Make vectors unit vectors; those not longer than their floor become 0.
   pure subroutine normalise(vectors, floor)

@@ -38,7 +38,7 @@ contains
     if (len_trim(shares(job%model%kin%sim_type)) > 0) then
       call line('units:   mass, force and energy per '//trim(shares(job%model%kin%sim_type)))
     end if
-    call line('grid:    '//sizes(whole%n(:dim) - 1)//' cells, '//to_text(whole%size())// &
+    call line('grid:    '//cells_of(job, whole%n(:dim) - 1)//' cells, '//to_text(whole%size())// &
               ' nodes, '//box(lower(:dim), upper(:dim)))
     call report_bodies(job, exact)
     call line('contacts: '//to_text(size(job%model%contacts)))
@@ -124,6 +124,21 @@ contains
 
     call put_line(text)
   end subroutine line
+
+  !> The cells of the grid: as many in each direction, or in all on a mesh.
+  pure function cells_of(job, counts) result(text)
+    !> The job.
+    type(job_t), intent(in) :: job
+    !> Distances of the last nodes in each direction from the first one.
+    integer, intent(in) :: counts(:)
+    !> The text.
+    character(:), allocatable :: text
+
+    text = sizes(counts)
+    if (product(counts) /= job%model%grid%cell_count()) then
+      text = to_text(job%model%grid%cell_count())
+    end if
+  end function cells_of
 
   !> Counts as `20 x 30`.
   pure function sizes(counts) result(text)

@@ -8,7 +8,8 @@ module mpm_sort
 
 contains
 
-  !> Smallest and largest first node of the stencils of points inside the grid.
+  !> Smallest and largest first node of the stencils of points inside the grid; on a mesh the lowest
+  !! and highest node of their cells.
   pure subroutine base_bounds(stencil, n, key, lo, hi)
     !> Basis.
     type(stencil_t), intent(in) :: stencil
@@ -24,6 +25,16 @@ contains
 
     lo = huge(1)
     hi = -1
+    if (allocated(stencil%mesh)) then
+      previous = outside
+      do p = 1, n
+        if (key(p) == previous .or. key(p) == outside) cycle
+        previous = key(p)
+        lo = [min(lo(1), stencil%mesh%span(1, key(p)) - 1), 0, 0]
+        hi = [max(hi(1), stencil%mesh%span(2, key(p)) - 1), 0, 0]
+      end do
+      return
+    end if
     if (stencil%dim == 1) then
       low = huge(1)
       high = -1
@@ -51,7 +62,7 @@ contains
   !!
   !! The sort is stable, so the order depends on the storage order alone, not on the number of
   !! threads: each thread counts and places a part of the points. A row is one layer of cells in the
-  !! last direction of the grid.
+  !! last direction of the grid; a mesh is one row.
   subroutine sort_by_cell(stencil, n, key, lo, hi, order, row_offset, threads)
     !> Basis.
     type(stencil_t), intent(in) :: stencil
@@ -72,6 +83,13 @@ contains
     integer, allocatable :: begin(:, :), cell(:)
     integer :: cells(3), parts, part, rows
 
+    if (allocated(stencil%mesh)) then
+      call sort_by_key(n, key, order)
+      if (allocated(row_offset)) deallocate (row_offset)
+      allocate (row_offset(0:1))
+      row_offset = [0, n]
+      return
+    end if
     cells = hi - lo + 1
     parts = 1
     ! Counts of an almost empty window would cost more than the threads gain.
@@ -183,6 +201,33 @@ contains
       order(begin(cell(j))) = j
     end do
   end subroutine place_points
+
+  !> Order points by their keys; a stable sort.
+  pure subroutine sort_by_key(n, key, order)
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Keys. (n)
+    integer, intent(in) :: key(n)
+    !> Slots of the points in the order of their keys. (n)
+    integer, intent(out) :: order(n)
+    integer, allocatable :: begin(:)
+    integer :: p, k, total, count
+
+    allocate (begin(minval(key):maxval(key)), source=0)
+    do p = 1, n
+      begin(key(p)) = begin(key(p)) + 1
+    end do
+    total = 0
+    do k = lbound(begin, 1), ubound(begin, 1)
+      count = begin(k)
+      begin(k) = total
+      total = total + count
+    end do
+    do p = 1, n
+      begin(key(p)) = begin(key(p)) + 1
+      order(begin(key(p))) = p
+    end do
+  end subroutine sort_by_key
 
   !> Cells of points counted from the lower corner of their bounding box.
   pure subroutine local_cells(n, base, lo, cells, cell)

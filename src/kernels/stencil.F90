@@ -27,6 +27,7 @@
 !! roundings, so that it has a velocity also when no other point reaches it.
 module mpm_stencil
   use mpm_kinds, only: wp
+  use mpm_mesh, only: mesh_t
   implicit none
   private
   public :: stencil_t
@@ -76,6 +77,10 @@ module mpm_stencil
     real(wp) :: h(3) = 1.0_wp
     !> Cells in each direction; 0 in unused ones.
     integer :: n_cells(3) = 0
+    !> The mesh of a grid that is not Cartesian, whose functions are no products: points have lists
+    !! of nodes there (`mpm_node_list`), and the key of a point is its cell. Then `h` is the least
+    !! height of a cell and `n_cells` is 0.
+    type(mesh_t), allocatable :: mesh
   contains
     !> Whether points must be treated by the general routines.
     procedure, private :: general => stencil_general
@@ -86,7 +91,7 @@ module mpm_stencil
 contains
 
   !> Keys of points: the flattened grid index of the first node of the stencil, or `outside`.
-  pure subroutine stencil_keys(stencil, n, x, extent, key)
+  pure subroutine stencil_keys(stencil, n, x, extent, key, guess)
     !> Basis.
     type(stencil_t), intent(in) :: stencil
     !> Number of points.
@@ -95,9 +100,17 @@ contains
     real(wp), intent(in) :: x(stencil%dim, n)
     !> Half sides of the points' boxes. [m] (n)
     real(wp), intent(in) :: extent(n)
-    !> b_x + (N_x + 1) (b_y + (N_y + 1) b_z). (n)
+    !> b_x + (N_x + 1) (b_y + (N_y + 1) b_z); on a mesh the cell, from 1. (n)
     integer, intent(out) :: key(n)
+    !> Keys that are likely; saves time on a mesh. (n)
+    integer, intent(in), optional :: guess(n)
 
+    if (allocated(stencil%mesh)) then
+      key = outside
+      if (present(guess)) key = guess
+      call stencil%mesh%locate(n, x, key)
+      return
+    end if
     if (any(stencil%periodic)) then
       call general_keys(stencil, n, x, extent, key)
       return

@@ -30,6 +30,8 @@ module mpm_generator_text
     procedure :: read_reals => generator_text_read_reals
     !> Positive integers of a key.
     procedure :: read_integers => generator_text_read_integers
+    !> Text of a key.
+    procedure :: read_text => generator_text_read_text
     !> Line of a key.
     procedure :: line_of => generator_text_line_of
     procedure, private :: find_values => generator_text_find_values
@@ -119,6 +121,23 @@ contains
     end do
   end subroutine generator_text_read_integers
 
+  !> Text of a key.
+  subroutine generator_text_read_text(self, key, text, error)
+    !> The text.
+    class(generator_text_t), intent(in) :: self
+    !> The key.
+    character(*), intent(in) :: key
+    !> What it says.
+    character(:), allocatable, intent(out) :: text
+    !> A missing key.
+    type(error_t), allocatable, intent(out) :: error
+    type(value_t), allocatable :: values(:)
+
+    call self%find_values(key, 1, values, error)
+    text = ''
+    if (.not. allocated(error)) text = trim(values(1)%text)
+  end subroutine generator_text_read_text
+
   !> Line of a key.
   pure function generator_text_line_of(self, key) result(line)
     !> The text.
@@ -206,6 +225,8 @@ contains
       text = 'the cells of the lattice in each direction of the grid'
     case ('lmpp')
       text = 'the number of points in each cell and direction'
+    case ('msh_file')
+      text = 'the Gmsh file whose cells get points'
     case ('rho')
       text = 'the density of the points, in kg/m3'
     case default
@@ -231,6 +252,8 @@ contains
       text = 'lmpp = 2'
     case ('rho')
       text = 'rho = 1000'
+    case ('msh_file')
+      text = 'msh_file = "box.msh"'
     case default
       text = key//' = "block.points"'
     end select

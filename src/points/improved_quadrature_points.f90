@@ -11,6 +11,7 @@ module mpm_improved_quadrature_points
   use mpm_kinds, only: lp, wp
   use mpm_level_set, only: level_set_t
   use mpm_memory, only: way_to_more
+  use mpm_mesh_grid, only: mesh_grid_t
   use mpm_point_cells, only: point_cells_t
   use mpm_point_exchange, only: add_reserve
   use mpm_points, only: bytes_per_point, points_restore, points_save
@@ -113,6 +114,13 @@ contains
     character(:), allocatable :: message
     integer :: periods(3)
 
+    select type (grid)
+    class is (mesh_grid_t)
+      call properties%reject('quadrature', 'ImprovedQuadraturePoints need a Cartesian grid', &
+                             error, 'use DefaultPoints, or a Cartesian grid')
+      return
+    class default
+    end select
     periods = grid%periods()
     if (self%settings%x_periodic .and. periods(1) == 0) then
       call properties%reject('flags', 'X_PERIODIC, but the grid is not periodic along x', error, &

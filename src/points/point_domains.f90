@@ -24,10 +24,12 @@ module mpm_point_domains
   implicit none
   private
   public :: point_domains_t
-  public :: rule_cpdi, rule_cpdi2, rule_cpgimp, rule_ugimp
+  public :: rule_cpdi, rule_cpdi2, rule_cpgimp, rule_none, rule_ugimp
 
-  !> Rules, as mpm_3d numbers them.
-  integer, parameter :: rule_ugimp = 1, rule_cpgimp = 2, rule_cpdi = 3, rule_cpdi2 = 4
+  !> Rules, as mpm_3d numbers them; on a mesh points have no domains, but lists of nodes.
+  integer, parameter :: rule_none = 0, rule_ugimp = 1, rule_cpgimp = 2, rule_cpdi = 3
+  !> The last one.
+  integer, parameter :: rule_cpdi2 = 4
   !> Most values and derivatives of 1D functions of a block of corners.
   integer, parameter :: most_values = 12*block_size
   !> Degree of the Taylor polynomial of exp(dt L).
@@ -39,7 +41,7 @@ module mpm_point_domains
     integer :: rule = rule_ugimp
     !> Dimensions of the grid.
     integer :: dim = 3
-    !> Side of each point's box at the start. [m] (n)
+    !> Side of each point's box at the start; not allocated without domains. [m] (n)
     real(wp), allocatable :: side(:)
     !> cpGIMP: F_kk (dim, n); CPDI: F by rows (dim dim, n).
     real(wp), allocatable :: stretch(:, :)
@@ -53,6 +55,8 @@ module mpm_point_domains
     type(node_list_t) :: list
     !> Window of the node arrays, as of the lists.
     type(window_t) :: window
+    !> Cells of a mesh in which the corners of the points' boxes were, as a guess. (2**dim, n)
+    integer, allocatable :: corner_cell(:, :)
     !> First nodes of the boxes of nodes of the points, not brought back at seams. (3, n)
     integer, allocatable, private :: first(:, :)
     !> Nodes of the boxes in each direction. (3, n)
@@ -200,7 +204,7 @@ contains
     !> A permutation of the slots. (n)
     integer, intent(in) :: order(:)
 
-    self%side = self%side(order)
+    if (allocated(self%side)) self%side = self%side(order)
     if (allocated(self%stretch)) self%stretch = self%stretch(:, order)
     if (allocated(self%corner)) self%corner = self%corner(:, order)
     if (allocated(self%content)) self%content = self%content(order)
@@ -813,13 +817,15 @@ contains
     integer(lp) :: bytes
     integer(lp) :: reals, integers
 
-    reals = size(self%side, kind=lp)
+    reals = 0
+    if (allocated(self%side)) reals = size(self%side, kind=lp)
     if (allocated(self%stretch)) reals = reals + size(self%stretch, kind=lp)
     if (allocated(self%corner)) then
       reals = reals + size(self%corner, kind=lp) + size(self%content, kind=lp)
     end if
     integers = 0
     if (allocated(self%first)) integers = 7*size(self%is_plain, kind=lp)
+    if (allocated(self%corner_cell)) integers = integers + size(self%corner_cell, kind=lp)
     bytes = (reals*storage_size(1.0_wp, lp) + integers*storage_size(1, lp))/8 + self%list%memory()
   end function point_domains_memory
 

@@ -6,6 +6,7 @@ module mpm_point_maps
   use mpm_kinds, only: wp
   use mpm_kinematics, only: type_axisymmetric
   use mpm_mass_gradient, only: mass_gradient
+  use mpm_mesh_lists, only: list_nodes_of_cells
   use mpm_momentum, only: add_momentum
   use mpm_nodal_volume, only: nodal_volume
   use mpm_points, only: points_t
@@ -15,9 +16,35 @@ module mpm_point_maps
   use mpm_window, only: window_t
   implicit none
   private
-  public :: interpolate_points, map_mass_gradient, map_momentum, map_points, map_volume
+  public :: interpolate_points, list_mesh_nodes, map_mass_gradient, map_momentum, map_points
+  public :: map_volume
 
 contains
+
+  !> List the nodes of the points inside a mesh.
+  subroutine list_mesh_nodes(points, threads, window)
+    !> The points, with keys.
+    class(points_t), intent(inout) :: points
+    !> Number of threads.
+    integer, intent(in) :: threads
+    !> The nodes that the points reach; none when no point is inside.
+    type(window_t), intent(out) :: window
+    integer :: n
+
+    n = points%n_inside
+    associate (stencil => points%stencil, domains => points%domains)
+      if (n > 0) then
+        call list_nodes_of_cells(stencil%mesh, useful_threads(threads, n), stencil%averaged, n, &
+                                 points%x(:, :n), points%extent(:n), points%key(:n), &
+                                 domains%corner_cell, domains%list, window)
+        if (points%kin%sim_type == type_axisymmetric) then
+          domains%list%radius = points%x(1, :n)
+          domains%list%least_radius = axis_fraction*stencil%h(1)
+        end if
+      end if
+      domains%window = window
+    end associate
+  end subroutine list_mesh_nodes
 
   !> Nodal mass, momentum and internal force of the points inside the grid.
   subroutine map_points(points, window, threads, velocity, stress, node_mass, node_momentum, &

@@ -10,7 +10,7 @@ module mpm_points
   use mpm_description, only: description_t
   use mpm_digest, only: digest_t
   use mpm_document, only: value_t
-  use mpm_point_domains, only: point_domains_t
+  use mpm_point_domains, only: point_domains_t, rule_none
   use mpm_properties, only: properties_t
   use mpm_seam, only: widen_at_seam, wrap_points
   use mpm_sort, only: base_bounds, sort_by_cell
@@ -101,8 +101,8 @@ module mpm_points
     logical :: needs_gradient = .false.
     !> What the points have to tell the user, once; not allocated when there is nothing.
     character(:), allocatable :: remark
-    !> Domains over which functions are averaged; not allocated where the basis is that of
-    !! `stencil`.
+    !> Domains over which functions are averaged, and lists of nodes; not allocated where the basis
+    !! is that of `stencil`.
     type(point_domains_t), allocatable :: domains
     !> The basis between points and nodes.
     type(stencil_t) :: stencil
@@ -282,6 +282,12 @@ contains
     type(stencil_t), intent(in) :: stencil
 
     self%stencil = stencil
+    if (allocated(stencil%mesh) .and. .not. allocated(self%domains)) then
+      ! Functions of a mesh are no products: its points have lists of nodes.
+      allocate (self%domains)
+      self%domains%rule = rule_none
+      self%domains%dim = stencil%dim
+    end if
     if (any(stencil%periodic)) then
       call wrap_points(stencil, self%n_inside, self%x(:, :self%n_inside))
     end if
@@ -692,6 +698,10 @@ contains
     if (self%hi(1) < 0) return
     window%lo = self%lo
     window%n = 1
+    if (allocated(self%stencil%mesh)) then
+      window%n(1) = self%hi(1) - self%lo(1) + 1
+      return
+    end if
     associate (dim => self%stencil%dim)
       window%n(:dim) = self%hi(:dim) - self%lo(:dim) + self%stencil%width
     end associate

@@ -12,7 +12,7 @@ module mpm_explicit_steps
   use mpm_phase_clock, only: phase_clock_t, phase_g2p, phase_material, phase_nodes, phase_p2g, &
                              phase_sort
   use mpm_point_blocks, only: sweep_block
-  use mpm_point_maps, only: interpolate_points, map_momentum, map_points
+  use mpm_point_maps, only: interpolate_points, list_mesh_nodes, map_momentum, map_points
   use mpm_points, only: points_t
   use mpm_seam, only: copy_to_ghosts, widen_at_seam, wrap_points
   use mpm_sort, only: base_bounds
@@ -77,7 +77,10 @@ contains
 
     if (present(clock)) call clock%enter(phase_nodes)
     dim = body%points%stencil%dim
-    if (allocated(body%points%domains)) then
+    if (allocated(body%points%stencil%mesh)) then
+      call body%points%refresh_order(threads)
+      call list_mesh_nodes(body%points, threads, window)
+    else if (allocated(body%points%domains)) then
       call body%points%refresh_order(threads)
       n = body%points%n_inside
       call body%points%domains%place(body%points%stencil, useful_threads(threads, n), n, &
@@ -107,7 +110,7 @@ contains
     n = body%points%n_inside
     if (n == 0) return
     associate (points => body%points, nodes => body%nodes)
-      if (allocated(points%domains)) then
+      if (allocated(points%domains) .and. .not. allocated(points%stencil%mesh)) then
         call points%domains%make_lists(points%kin, points%stencil, useful_threads(threads, n), n, &
                                        points%x(:, :n), window)
       end if
@@ -492,7 +495,7 @@ contains
       end if
       if (drift) then
         if (any(stencil%periodic)) call wrap_points(stencil, n, points%x(:, a:b))
-        call stencil_keys(stencil, n, points%x(:, a:b), points%extent(a:b), key)
+        call stencil_keys(stencil, n, points%x(:, a:b), points%extent(a:b), key, points%key(a:b))
         changed = count(key(:n) /= points%key(a:b))
         points%key(a:b) = key(:n)
         call base_bounds(stencil, n, key, lo, hi)
@@ -657,7 +660,8 @@ contains
     end if
   end function stable_time
 
-  !> Largest stable c dt of a body, from the spacing of the grid and the points in a cell.
+  !> Largest stable c dt of a body, from the spacing of the grid and the points in a cell; on a mesh
+  !! from the cells alone.
   pure function stable_length(spacing, body, filtered, flip) result(length)
     !> Spacing of the grid. [m]
     real(wp), intent(in) :: spacing(3)
@@ -683,7 +687,9 @@ contains
     if (present(filtered)) through_points = filtered
     by_flip = .true.
     if (present(flip)) by_flip = flip
-    if (through_points) then
+    if (allocated(body%points%stencil%mesh)) then
+      length = body%points%stencil%mesh%stable
+    else if (through_points) then
       length = filtered_limit(per_cell, by_flip)/sqrt(sum(1.0_wp/spacing(:dim)**2))
     else
       length = courant_limit(body%points%stencil, per_cell, touches_wall(body%points))* &

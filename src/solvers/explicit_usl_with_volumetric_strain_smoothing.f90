@@ -11,6 +11,7 @@ module mpm_explicit_usl_with_volumetric_strain_smoothing
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t, type_plane_strain
   use mpm_material, only: material_t
+  use mpm_mesh_grid, only: mesh_grid_t
   use mpm_model, only: model_t
   use mpm_phase_clock, only: phase_material
   use mpm_point_domains, only: rule_cpdi2
@@ -212,6 +213,13 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: i
 
+    select type (grid => model%grid)
+    class is (mesh_grid_t)
+      call self%properties%reject('flags', 'the smoothing of strains needs a Cartesian grid', &
+                                  error, 'use the solver ExplicitUSL, or a Cartesian grid')
+      return
+    class default
+    end select
     if (self%method == zhang_flux .and. model%kin%sim_type /= type_plane_strain) then
       call self%properties%reject('flags', 'USE_ZHANG_FLUX is for TYPE 2 (plane strain)', error, &
                                   'use USE_ZHANG_CELLS or USE_MAST_CELLS')

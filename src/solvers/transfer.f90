@@ -136,6 +136,11 @@ contains
 
     if (allocated(points%affine)) deallocate (points%affine)
     if (.not. self%affine) return
+    if (allocated(points%stencil%mesh)) then
+      call raise(error, err_input, 'the transfers APIC and MLS need a Cartesian grid', &
+                 hint='use transfer = "FLIP", "PIC" or "XPIC"')
+      return
+    end if
     if (allocated(points%domains)) then
       call raise(error, err_input, 'the transfers APIC and MLS need the functions at the points, &
                  &but these points have means over domains', hint='use transfer = "FLIP", "PIC" &

@@ -1,7 +1,7 @@
 """A scene that any class can be part of, for the tests of checkpoints.
 
-Two bodies that collide and a third one, under gravity, in TYPE 2. A class takes its place in it by
-the example that it gives of itself.
+Two bodies that collide and a third one, under gravity, in TYPE 2 where the class has it. A class
+takes its place in it by the example that it gives of itself.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from scene import Run, block, huang, write_points
+from meshes import CELLS, MESH, TRIANGLES, needs_mesh, type_of, write_mesh
+from scene import DIM, Run, block, huang, write_points
 
 DT = 1e-3
 STEPS = 60
@@ -64,6 +65,8 @@ FISH = """    material-class = "Fish"
     material-props = {1e4, 0.3, 0, 0, 0, 0, 0, 0, 0, 0, 0}"""
 VARIANCE = np.diag([1e-4, 0, 0, 0, 0, 0, 0, 0, 0.1]).ravel().tolist()
 MIXTURE = "1, 9\n\n" + ", ".join(map(repr, [1.0, *[0.02] * 3, *[6.0] * 3, 0, 0, 0, *VARIANCE]))
+#: Height of the bodies in 3D, and the points across it.
+HEIGHT, LAYERS = 0.1, 3
 #: What examples of materials are given so that waves are slow enough for the time step.
 SOFTER = {
     "Cornstarch": [("E = 1e6", "E = 1e5")],
@@ -120,6 +123,11 @@ def set_first(section: str, values: str) -> str:
 def write_scene(folder: Path, role: str = "", example: str = "", **saving: float) -> None:
     """Write a config with an example in its place, and the points files."""
     sections, parts, first = dict(SECTIONS), dict(PARTS), ""
+    sim_type = type_of(example)
+    dim = DIM[sim_type]
+    write_mesh(folder / MESH, max(2, dim), CELLS[sim_type])
+    if needs_mesh(example):
+        sections["grid"] = TRIANGLES
     if role in sections:
         sections[role] = example
         if role == "driver" and "Fish" in example:
@@ -150,12 +158,17 @@ def write_scene(folder: Path, role: str = "", example: str = "", **saving: float
             chosen["boundary"] = ASSIGNED
         text = "\n".join(chosen.values()).replace("NAME", name)
         bodies.append(f'body\n{{\n    class = "DefaultBody"\n    name = "{name}"\n{text}\n}}')
-        write_points(folder / f"{name}.points", block(2, lower, upper, counts, velocity=velocity))
+        if dim == 3:
+            # As many points as before would take long.
+            counts = [min(n, 12) for n in counts] + [LAYERS]
+            lower, upper, velocity = [*lower, 0.4], [*upper, 0.4 + HEIGHT], [*velocity, 0.0]
+        rows = block(sim_type, lower[:dim], upper[:dim], counts[:dim], velocity=velocity[:dim])
+        write_points(folder / f"{name}.points", rows)
     shutil.copy(folder / "block_0.points", folder / "block.points")
     if first:
         bodies[0] = first
     contact = sections.pop("contact")
-    job = f"job {{ t = {T_START!r} dt = {DT!r} TYPE = 2 }}"
+    job = f"job {{ t = {T_START!r} dt = {DT!r} TYPE = {sim_type} }}"
     probe = example if role == "probe" else ""
     config = "\n".join([job, *sections.values(), *bodies, contact, probe]) + "\n"
     (folder / "scene.cfg").write_text(config)

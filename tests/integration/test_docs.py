@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from checkpoints import FISH, MIXTURE
-from scene import Array, Run
+from meshes import CELLS, MESH, TRIANGLES, needs_mesh, type_of, write_mesh
+from scene import DIM, NVEL, Array, Run
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference"
@@ -162,6 +163,12 @@ def write_example(role: str, example: str, folder: Path) -> None:
     """Write a config that uses an example, and the points files that examples name."""
     sections, parts, first, contact = dict(SECTIONS), dict(PARTS), "", ""
     generator = LATTICE + BOX
+    sim_type = type_of(example)
+    dim = DIM[sim_type]
+    sections["job"] = sections["job"].replace("TYPE = 2", f"TYPE = {sim_type}")
+    write_mesh(folder / MESH, max(2, dim), CELLS[sim_type])
+    if needs_mesh(example):
+        sections["grid"] = TRIANGLES
     if role in sections:
         sections[role] = example
         if role == "driver" and "Fish" in example:
@@ -195,7 +202,8 @@ def write_example(role: str, example: str, folder: Path) -> None:
     (folder / "scene.cfg").write_text("\n".join(config) + "\n", "utf-8")
     (folder / "block.parts").write_text(generator, "utf-8")
     for name in ("block", *BODIES):
-        (folder / f"{name}.points").write_text("1\n0.625 6.25e-4 0.5 0.5 0 0 1\n", "utf-8")
+        numbers = ["0.5"] * dim + ["0"] * NVEL[sim_type]
+        (folder / f"{name}.points").write_text(f"1\n0.625 6.25e-4 {' '.join(numbers)} 1\n", "utf-8")
 
 
 @pytest.mark.parametrize(
