@@ -11,13 +11,13 @@ module mpm_command_line
 
   !> What the program is asked to do.
   type :: command_line_t
-    !> `run`, `check`, `estimate`, `list`, `describe`, `version` or `help`.
+    !> `run`, `check`, `estimate`, `list`, `describe`, `describe-run`, `version` or `help`.
     character(:), allocatable :: action
     !> The config of `run`, `check` and `estimate`.
     character(:), allocatable :: config
     !> The checkpoint to go on from; empty for none.
     character(:), allocatable :: checkpoint
-    !> The role of `list`, or '' for all; the class of `describe`.
+    !> The role of `list`, or '' for all; the class of `describe`; the file of `describe-run`.
     character(:), allocatable :: subject
     !> Texts of `--set`.
     type(string_t), allocatable :: overrides(:)
@@ -44,6 +44,8 @@ contains
            '       mpm3d -c FILE --estimate    time a few steps, tell how long a run takes'//nl// &
            '       mpm3d --list [ROLE]         classes that a config can name'//nl// &
            '       mpm3d --describe CLASS      purpose and properties of a class'//nl// &
+           '       mpm3d --describe-run FILE   program, config and points behind a checkpoint or&
+           & VTKHDF file'//nl// &
            '       mpm3d --version | --help'//nl//nl// &
            'options: --threads N               number of threads'//nl// &
            '         --max-memory SIZE         most memory of points and nodes, such as 8G;'//nl// &
@@ -98,6 +100,9 @@ contains
       case ('--describe')
         call set_action(command, 'describe', error)
         if (.not. allocated(error)) call next_value(i, argument, 'a class', command%subject, error)
+      case ('--describe-run')
+        call set_action(command, 'describe-run', error)
+        if (.not. allocated(error)) call next_value(i, argument, 'a file', command%subject, error)
       case ('--version')
         call set_action(command, 'version', error)
       case ('-h', '--help')
@@ -243,9 +248,9 @@ contains
     character(*), intent(in) :: argument
     !> The error.
     type(error_t), allocatable, intent(inout) :: error
-    character(12), parameter :: options(11) = &
-      [character(12) :: '--check', '--estimate', '--list', '--describe', '--version', '--help', &
-       '--threads', '--max-memory', '--set', '--config', '--restart']
+    character(14), parameter :: options(12) = &
+      [character(14) :: '--check', '--estimate', '--list', '--describe', '--describe-run', &
+       '--version', '--help', '--threads', '--max-memory', '--set', '--config', '--restart']
     type(string_t) :: known(size(options))
     character(:), allocatable :: hint
     integer :: i

@@ -3,7 +3,7 @@
 _mpm3d() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
   local program=${COMP_WORDS[0]} options
-  options='-c --config -r --restart --check --estimate --list --describe --version --help --threads
+  options='-c --config -r --restart --check --estimate --list --describe --describe-run --version --help --threads
            --max-memory --set -q -v'
   COMPREPLY=()
   case $previous in
@@ -11,7 +11,7 @@ _mpm3d() {
       mapfile -t COMPREPLY < <(compgen -f -X '!*.cfg' -- "$current"; compgen -d -- "$current")
       compopt -o filenames
       ;;
-    -r | --restart)
+    -r | --restart | --describe-run)
       mapfile -t COMPREPLY < <(compgen -f -X '!*.h5' -- "$current"; compgen -d -- "$current")
       compopt -o filenames
       ;;

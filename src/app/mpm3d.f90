@@ -3,6 +3,7 @@ program mpm3d
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mpm_build_info, only: build_type, compiler, revision, version
+  use mpm_checkpoint_file, only: read_run_text
   use mpm_colours, only: coloured
   use mpm_command_line, only: command_line_t, read_command_line, usage
   use mpm_console, only: finish_output, put_line
@@ -56,6 +57,7 @@ contains
     type(command_line_t), intent(in) :: command
     !> What went wrong.
     type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: text
 
     select case (command%action)
     case ('help')
@@ -66,6 +68,9 @@ contains
       call list_classes(command%subject, error)
     case ('describe')
       call describe_class(command%subject, error)
+    case ('describe-run')
+      call read_run_text(command%subject, text, error)
+      if (.not. allocated(error)) call put_line(text)
     case default
       call run_job(command, error)
     end select

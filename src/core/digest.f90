@@ -27,6 +27,8 @@ module mpm_digest
     procedure :: add => digest_add
     !> Add reals of two indices.
     procedure :: add_columns => digest_add_columns
+    !> Add a text.
+    procedure :: add_text => digest_add_text
     !> The digest as 16 hexadecimal digits.
     procedure :: text => digest_text
   end type digest_t
@@ -82,6 +84,19 @@ contains
       call self%add(values(:, i))
     end do
   end subroutine digest_add_columns
+
+  !> Add a text, and its length in bytes.
+  pure subroutine digest_add_text(self, text)
+    !> The digest.
+    class(digest_t), intent(inout) :: self
+    !> The text.
+    character(*), intent(in) :: text
+    integer :: missing
+
+    missing = modulo(-len(text), 4)
+    call self%add_words(transfer(text//repeat(achar(0), missing), [0_int32]))
+    call self%add_words([int(len(text), int32)])
+  end subroutine digest_add_text
 
   !> The digest as 16 hexadecimal digits.
   pure function digest_text(self) result(text)

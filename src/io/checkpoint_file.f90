@@ -1,6 +1,6 @@
 !> Checkpoint files: HDF5 with a seal, whole or absent.
 module mpm_checkpoint_file
-  use mpm_errors, only: error_t
+  use mpm_errors, only: err_input, error_t, raise
   use mpm_file_system, only: sync_file
   use mpm_files, only: delete_file, process_id, rename_file
   use mpm_hdf5_file, only: hdf5_file_t
@@ -8,7 +8,7 @@ module mpm_checkpoint_file
   use mpm_strings, only: to_text
   implicit none
   private
-  public :: checkpoint_file_t, can_checkpoint
+  public :: checkpoint_file_t, can_checkpoint, read_run_text
 
   !> Whether this build has checkpoints.
   logical, parameter :: can_checkpoint = .true.
@@ -79,5 +79,34 @@ contains
     call self%open(path, .false.)
     if (allocated(self%failure)) allocate (error, source=self%failure)
   end subroutine checkpoint_file_read
+
+  !> What a checkpoint or a VTKHDF file says of the run that it comes from.
+  subroutine read_run_text(path, text, error)
+    !> The file.
+    character(*), intent(in) :: path
+    !> The text.
+    character(:), allocatable, intent(out) :: text
+    !> It is missing, damaged, or says nothing.
+    type(error_t), allocatable, intent(out) :: error
+    type(hdf5_file_t), allocatable :: file
+    logical :: found
+
+    text = ''
+    found = .false.
+    allocate (file)
+    call file%open(path, .false.)
+    if (.not. allocated(file%failure)) then
+      if (file%has('mpm3d')) call file%enter('mpm3d')
+      found = file%has('run')
+      if (found) call file%get('run', text)
+    end if
+    call file%close()
+    if (allocated(file%failure)) then
+      call move_alloc(file%failure, error)
+    else if (.not. found) then
+      call raise(error, err_input, 'the file does not say which run it comes from', file=path, &
+                 hint='checkpoints and VTKHDF files of mpm3d do')
+    end if
+  end subroutine read_run_text
 
 end module mpm_checkpoint_file

@@ -10,6 +10,7 @@ module mpm_checkpoints
   use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
   use mpm_monitor, only: monitor_t
+  use mpm_run_text, only: run_text
   use mpm_serializer, only: serializer_t
   use mpm_signals, only: save_was_asked, signal_name, stop_signal
   use mpm_solver, only: solver_t
@@ -148,6 +149,7 @@ contains
     allocate (file)
     call file%begin(path)
     call file%put('program', 'mpm3d '//version//' ('//revision//', '//compiler//')')
+    call file%put('run', run_text(model, self%text))
     call file%put('config', self%config)
     call file%put('text', self%text)
     call file%put('overrides', size(self%overrides))

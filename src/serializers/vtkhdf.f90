@@ -15,6 +15,7 @@ module mpm_vtkhdf
   use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
   use mpm_properties, only: properties_t
+  use mpm_run_text, only: run_text
   use mpm_serializer, only: add_save_properties, serializer_t
   use mpm_strings, only: nearest_name, string_t, to_text
   use mpm_window, only: window_t
@@ -277,7 +278,10 @@ contains
     call file%set_attribute('type', [int(model%kin%sim_type, lp)])
     call file%set_attribute('units', 'm, kg, s, N, Pa, J; in TYPE 1, 2 and 5 per m2 of section or &
                             &m of depth, in TYPE 4 per radian')
-    if (allocated(self%config_text)) call file%put('config', self%config_text)
+    if (allocated(self%config_text)) then
+      call file%put('config', self%config_text)
+      call file%put('run', run_text(model, self%config_text))
+    end if
     call file%leave()
     call file%enter('VTKHDF')
     call file%set_attribute('Version', [2_lp, 0_lp])

@@ -40,6 +40,7 @@ from scene import Run
         pytest.param(
             ["--describe", "ContactHuan"], USAGE, 'did you mean "ContactHuang"?', id="describe-near"
         ),
+        pytest.param(["--describe-run"], USAGE, "--describe-run needs a file", id="run-nothing"),
         pytest.param(["--list", "things"], USAGE, "things", id="list-unknown"),
         pytest.param(
             ["-c", "scene.cfg", "--threads", "0"], USAGE, "not a number from 1", id="threads-0"

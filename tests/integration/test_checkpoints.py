@@ -156,6 +156,36 @@ def test_points_files_are_not_needed(mpm3d: Run, tmp_path: Path) -> None:
     assert files_of(tmp_path / "output") == whole
 
 
+def test_describe_run(mpm3d: Run, tmp_path: Path) -> None:
+    """Checkpoints and series say what they come from; digests follow what was read."""
+    described = []
+    for k, name in enumerate(("a", "b")):
+        folder = tmp_path / name
+        folder.mkdir()
+        write_scene(folder, save_time=INTERVAL)
+        if k == 1:
+            with (folder / "scene.cfg").open("a") as file:
+                file.write("# a remark\n")
+        options = ["--set", "serializer.class=VTKHDF", "--set", "driver.properties=0.005"]
+        result = mpm3d("-c", "scene.cfg", "-q", *options, cwd=folder)
+        assert (result.returncode, result.stderr) == (0, "")
+        saved = mpm3d("--describe-run", checkpoint(20), cwd=folder)
+        series = mpm3d("--describe-run", "output/points.0.block_0.vtkhdf", cwd=folder)
+        assert (saved.returncode, saved.stderr) == (0, "")
+        assert saved.stdout == series.stdout
+        described.append(saved.stdout.splitlines())
+    version = mpm3d("--version", cwd=tmp_path).stdout
+    keys = ["program", "revision", "compiler", "build", "config", *(3 * ["points"])]
+    assert [line.partition(":")[0] for line in described[0]] == keys
+    for line in described[0][:3]:
+        assert line.partition(":")[2].strip().removeprefix("mpm3d ") in version
+    differ = [a.partition(":")[0] for a, b in zip(*described, strict=True) if a != b]
+    assert differ == ["config"]
+    result = mpm3d("--describe-run", "a/scene.cfg", cwd=tmp_path)
+    assert result.returncode == 2
+    assert result.stderr.startswith("a/scene.cfg: error: the file is not an HDF5 file")
+
+
 def test_later_stop_time(mpm3d: Run, tmp_path: Path) -> None:
     """A run that is prolonged at its end goes on as one that was planned so, up to rounding.
 

@@ -5,7 +5,7 @@ module mpm_checkpoint_file
   use mpm_store, only: store_t
   implicit none
   private
-  public :: checkpoint_file_t, can_checkpoint
+  public :: checkpoint_file_t, can_checkpoint, read_run_text
 
   !> Whether this build has checkpoints.
   logical, parameter :: can_checkpoint = .false.
@@ -74,6 +74,19 @@ contains
     self%path = path
     call raise(error, err_input, message, hint=way_out)
   end subroutine checkpoint_file_read
+
+  !> There is nothing to read.
+  subroutine read_run_text(path, text, error)
+    !> The file.
+    character(*), intent(in) :: path
+    !> Empty.
+    character(:), allocatable, intent(out) :: text
+    !> Always.
+    type(error_t), allocatable, intent(out) :: error
+
+    text = ''
+    call raise(error, err_input, message, file=path, hint=way_out)
+  end subroutine read_run_text
 
   !> Nothing.
   subroutine checkpoint_file_enter(self, name)
