@@ -45,6 +45,8 @@ module mpm_material
     procedure :: turn_history => material_turn_history
     !> Largest diffusivity of momentum in a block of points.
     procedure :: diffusivity => material_diffusivity
+    !> Density and friction of grains, of laws that describe some.
+    procedure :: grains => material_grains
     !> Take from another body what the memory of the points has of it.
     procedure :: observe => material_observe
     !> Send the fields of the memory when a frame is written.
@@ -247,6 +249,21 @@ contains
     end associate
     diffusivity = 0.0_wp
   end function material_diffusivity
+
+  !> Density and friction of grains: most laws describe none.
+  pure subroutine material_grains(self, density, friction)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> Density of the grains themselves; 0 of other materials. [kg/m3]
+    real(wp), intent(out) :: density
+    !> Largest ratio of shear stress to pressure at rest.
+    real(wp), intent(out) :: friction
+
+    associate (unused => self)
+    end associate
+    density = 0.0_wp
+    friction = 0.0_wp
+  end subroutine material_grains
 
   !> Take from another body what the memory of the points has of it: most laws know of none.
   !!

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from scene import Run, block, huang, write_points
+from scene import MATERIALS, Run, block, huang, write_points
 
 DT = 1e-3
 STEPS = 60
@@ -129,6 +129,10 @@ def write_scene(folder: Path, role: str = "", example: str = "", **saving: float
     for name, (lower, upper, counts, velocity) in BODIES.items():
         # What takes the place of points is for the first body only.
         chosen = {**parts, "points": parts["points"] if name == "block_0" else PARTS["points"]}
+        for class_name, materials in MATERIALS.items():
+            if f'"{class_name}"' in example:
+                chosen["material"] = materials.get(name, chosen["material"])
+                sections["contact"] = ""
         text = "\n".join(chosen.values()).replace("NAME", name)
         bodies.append(f'body\n{{\n    class = "DefaultBody"\n    name = "{name}"\n{text}\n}}')
         write_points(folder / f"{name}.points", block(2, lower, upper, counts, velocity=velocity))

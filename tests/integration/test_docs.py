@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scene import Array, Run
+from scene import MATERIALS, Array, Run
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference"
@@ -139,9 +139,10 @@ def write_example(role: str, example: str, folder: Path) -> None:
     else:
         assert role == "contact"
         contact = example
+    wanted = next((own for name, own in MATERIALS.items() if f'"{name}"' in example), {})
     bodies = [
         f'body\n{{\n    class = "DefaultBody"\n    name = "{name}"\n'
-        + "\n".join(parts.values())
+        + "\n".join({**parts, "material": wanted.get(name, parts["material"])}.values())
         + "\n}"
         for name in BODIES
     ]

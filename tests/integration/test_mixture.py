@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -120,20 +122,20 @@ def test_grains_as_heavy_as_the_fluid_stay(mpm3d: Run, tmp_path: Path, sim_type:
     assert float(np.max(fallen)) < 0.02 * 0.5 * GRAVITY * 0.2**2
 
 
-@pytest.mark.parametrize("name", ["SlurryContact", "SlurryContact_ReflectedBoundary"])
-def test_piston(mpm3d: Run, tmp_path: Path, name: str) -> None:
-    """A plate on a slurry rests on the pressure in its pores, which was given at the start."""
+def make_piston(folder: Path, name: str) -> Slurry:
+    """Write the points of a plate; return a scene in which it rests on a slurry."""
     mixture, plate = 0.5 * (RHO_GRAIN + RHO_FLUID), 2000.0
     body = Body("plate", block(1, [1.0], [1.2], [8], density=plate), modulus=1e6)
     contact = f"""contact
 {{
     class = "{name}"
     name = "piston"
-    properties = {{0.3}}
+    properties = {{0.3819}}
     str-properties = {{"plate", "sand", "water"}}
 }}
 """
-    scene = Slurry(
+    write_points(folder / "plate.points", body.rows)
+    return Slurry(
         sim_type=1,
         lengths=[1.5],
         cells=[30],
@@ -148,18 +150,54 @@ def test_piston(mpm3d: Run, tmp_path: Path, name: str) -> None:
         effective=mixture,
         more=[body.section(), contact],
     )
-    write_points(tmp_path / "plate.points", body.rows)
-    scene.run(mpm3d, tmp_path)
+
+
+@pytest.mark.parametrize("name", ["SlurryContact", "SlurryContact_ReflectedBoundary"])
+def test_piston(mpm3d: Run, tmp_path: Path, name: str) -> None:
+    """A plate on a slurry rests on the pressure in its pores, which was given at the start."""
+    make_piston(tmp_path, name).run(mpm3d, tmp_path)
     fallen = np.abs(series(tmp_path, 2, "plate")[-1].fields["displacement"][:, 0])
     assert float(np.max(fallen)) < 0.02 * 0.5 * GRAVITY * 0.2**2
     water = series(tmp_path, 1, "water")[-1]
     top = water.positions[:, 0] > 0.8
+    mixture, plate = 0.5 * (RHO_GRAIN + RHO_FLUID), 2000.0
     weight = (0.2 * plate + mixture * (1.0 - water.positions[top, 0])) * GRAVITY
     np.testing.assert_allclose(water.fields["pressure"][top], weight, rtol=0.05)
     force = read_series(tmp_path / "frames", "fnd", 2, "plate")[-1]
     held = force.fields["contact_force_by_sand_and_water_on_plate"][:, 0]
     # Its weight, and its inertia in the last swing.
     assert float(np.sum(held)) == pytest.approx(0.2 * plate * GRAVITY, rel=0.1)
+
+
+def test_mixture_solver(mpm3d: Run, tmp_path: Path) -> None:
+    """ExplicitMixtureSolver has the mixture and the contact in it: the same piston."""
+    scene = make_piston(tmp_path, "SlurryContact")
+    # A pressure at the start would change the masses of one of the fluids, not of the other.
+    scene.effective, scene.t_stop = 0.0, 0.05
+    scene.run(mpm3d, tmp_path)
+    expected = [series(tmp_path, i, name)[-1] for i, name in enumerate(("sand", "water", "plate"))]
+    text = (tmp_path / "scene.cfg").read_text()
+    text = text[: text.index("contact {")] + scene.more[0]
+    text = text.replace(
+        'class = "ExplicitUSL"',
+        f'class = "ExplicitMixtureSolver" properties = {{{scene.diameter!r}, {RHO_FLUID!r}}} '
+        'str-properties = {"sand", "water", "plate"}',
+    )
+    text = re.sub(
+        r'"SlurryFluidPhase"\n    material-props = \{(.*), .*\}\n    material-str-props.*\n',
+        r'"BarotropicViscousFluid"\n    material-props = {\1}\n',
+        text,
+    )
+    (tmp_path / "scene.cfg").write_text(text)
+    shutil.rmtree(tmp_path / "frames")
+    result = mpm3d("-c", "scene.cfg", cwd=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    for i, name in enumerate(("sand", "water", "plate")):
+        found = series(tmp_path, i, name)[-1]
+        # Some hundred steps of roundings of the pressure.
+        np.testing.assert_allclose(found.positions, expected[i].positions, atol=1e-8)
+        pressure, scale = found.fields["pressure"], 1e4
+        np.testing.assert_allclose(pressure, expected[i].fields["pressure"], atol=1e-5 * scale)
 
 
 def test_threads_and_restart(mpm3d: Run, tmp_path: Path) -> None:
