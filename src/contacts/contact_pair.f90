@@ -15,7 +15,7 @@ module mpm_contact_pair
   use mpm_window, only: intersect, window_t
   implicit none
   private
-  public :: add_pair_properties, contact_pair_t, shared_nodes, smallest_spacing
+  public :: add_mirror_notes, add_pair_properties, contact_pair_t, shared_nodes, smallest_spacing
   public :: normals_first, normals_mean, normals_mirrored, normals_none
 
   !> The law needs no normals.
@@ -68,6 +68,20 @@ contains
     call description%add_string('body_2', 'name of the second body', default='')
   end subroutine add_pair_properties
 
+  !> Remarks on mirrored normals.
+  subroutine add_mirror_notes(description)
+    !> The description.
+    type(description_t), intent(inout) :: description
+
+    call description%add_note('The normal is that of the first body, without the components across &
+                              &faces of the grid at the nodes of these faces, so that at a &
+                              &symmetry plane or a wall the body seems to go on. The faces are &
+                              &those of the grid, wherever its lower corner is, and none where it &
+                              &is periodic; mpm_3d takes coordinate 0 as the lower face.')
+    call description%add_note('Nodes where nothing is left of the normal, as in corners of the &
+                              &grid, are skipped.')
+  end subroutine add_mirror_notes
+
   !> Find the bodies that the properties name.
   subroutine contact_pair_find_bodies(self, grid, bodies, properties, error)
     !> The contact.
@@ -91,6 +105,7 @@ contains
                              bodies(self%pair(1))%body%name//'"', error, 'name another body')
       return
     end if
+    if (allocated(self%normal)) deallocate (self%normal, self%force)
     allocate (self%normal(grid%kin%nvel, 0), self%force(grid%kin%nvel, 0))
   end subroutine contact_pair_find_bodies
 

@@ -49,6 +49,8 @@ PARTS = {
     "material": '    material-class = "IsotropicLinearElasticity"\n    material-props = {1e5, 0.3}',
     "boundary": '    boundary-class = "CartesianBox"',
 }
+#: The boundary of a body that others meet as a rigid one.
+ASSIGNED = '    boundary-class = "AssignedVelocity"\n    boundary-props = {0.5, 0}'
 LATTICE = "Lx = {1, 1}\nNx = {20, 20}\nlmpp = 2\nrho = 1000\n"
 BODIES = {
     # Enough points that two threads share the work.
@@ -129,6 +131,8 @@ def write_scene(folder: Path, role: str = "", example: str = "", **saving: float
     for name, (lower, upper, counts, velocity) in BODIES.items():
         # What takes the place of points is for the first body only.
         chosen = {**parts, "points": parts["points"] if name == "block_0" else PARTS["points"]}
+        if name == "block_0" and "ContactRigid" in example:
+            chosen["boundary"] = ASSIGNED
         for class_name, materials in MATERIALS.items():
             if f'"{class_name}"' in example:
                 chosen["material"] = materials.get(name, chosen["material"])

@@ -97,7 +97,7 @@ def test_list(mpm3d: Run, tmp_path: Path) -> None:
             "CartesianFrictionalBox",
             "CartesianBoxCustom",
         },
-        "contact": {"ContactHuang"},
+        "contact": {"ContactHuang", "ContactLinked"},
     }
     for role, names in expected.items():
         assert names <= set(classes[role])

@@ -1,6 +1,6 @@
 !> Two blocks side by side, for contacts.
 module mpm_blocks_fixture
-  use mpm_contact_huang, only: contact_huang_t
+  use mpm_contact, only: contact_t
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
   use mpm_explicit_steps, only: locate_points, map_to_nodes
@@ -10,7 +10,7 @@ module mpm_blocks_fixture
   use mpm_properties, only: make_properties, properties_t
   implicit none
   private
-  public :: make_blocks, make_contact, map_all, meeting, total_force
+  public :: make_blocks, make_contact, map_all, meeting, node_state, total_force
 
   !> Column of nodes where the blocks touch.
   integer, parameter :: meeting = 4
@@ -56,8 +56,8 @@ contains
     type(model_t), intent(in) :: model
     !> Property lists as in a config.
     character(*), intent(in) :: text
-    !> The contact.
-    type(contact_huang_t), intent(out) :: contact
+    !> The contact; its class is that of the argument.
+    class(contact_t), intent(out) :: contact
     !> Bad properties or bodies.
     type(error_t), allocatable, intent(out) :: error
     type(description_t) :: description
@@ -68,6 +68,30 @@ contains
     if (allocated(error)) return
     call contact%init(model%grid, model%bodies, properties, error)
   end subroutine make_contact
+
+  !> Mass, momentum and force of a body at a node.
+  subroutine node_state(model, body, node, mass, momentum, force)
+    !> The model.
+    type(model_t), intent(in) :: model
+    !> Position of the body in the model's list.
+    integer, intent(in) :: body
+    !> Grid indices of the node, from 0.
+    integer, intent(in) :: node(3)
+    !> Mass. [kg]
+    real(wp), intent(out) :: mass
+    !> Momentum at the start of the step. [kg m/s]
+    real(wp), intent(out) :: momentum(:)
+    !> Force. [N]
+    real(wp), intent(out) :: force(:)
+    integer :: i
+
+    associate (nodes => model%bodies(body)%body%nodes)
+      i = nodes%window%index(node)
+      mass = nodes%mass(i)
+      momentum = nodes%momentum(:, i)
+      force = nodes%force(:, i)
+    end associate
+  end subroutine node_state
 
   !> Sum of all nodal forces of all bodies.
   function total_force(model) result(total)
