@@ -43,6 +43,10 @@ module mpm_material
     procedure :: assign_pressure => material_assign_pressure
     !> TYPE 4: express tensors of the memory in the basis of the moved points.
     procedure :: turn_history => material_turn_history
+    !> Ask the points to keep what `correct` needs.
+    procedure :: prepare => material_prepare
+    !> Correct the positions of the points at the end of a step.
+    procedure :: correct => material_correct
     !> Largest diffusivity of momentum in a block of points.
     procedure :: diffusivity => material_diffusivity
     !> Density and friction of grains, of laws that describe some.
@@ -249,6 +253,35 @@ contains
     end associate
     diffusivity = 0.0_wp
   end function material_diffusivity
+
+  !> Ask the points to keep what `correct` needs, when they are set up: most laws need nothing.
+  subroutine material_prepare(self, points)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> The points.
+    class(points_t), intent(inout) :: points
+
+    associate (unused => self, unused_points => points)
+    end associate
+  end subroutine material_prepare
+
+  !> Correct the positions of the points: most laws leave them where their motion takes them.
+  subroutine material_correct(self, grid, points, dt, threads)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> The points, moved.
+    class(points_t), intent(inout) :: points
+    !> Length of the step. [s]
+    real(wp), intent(in) :: dt
+    !> Number of threads.
+    integer, intent(in) :: threads
+
+    associate (unused => self, unused_grid => grid, unused_points => points, unused_dt => dt, &
+               unused_threads => threads)
+    end associate
+  end subroutine material_correct
 
   !> Density and friction of grains: most laws describe none.
   pure subroutine material_grains(self, density, friction)

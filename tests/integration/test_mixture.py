@@ -254,6 +254,7 @@ def test_threads_and_restart(mpm3d: Run, tmp_path: Path) -> None:
         packing=0.55,
         effective=0.55 * RHO_GRAIN + 0.45 * RHO_FLUID,
         flags="",
+        shift=[0.025, 0.5],
     )
     scene.run(mpm3d, tmp_path / "one", "--set", "serializer.properties={250, save_time = 4e-3}")
     scene.run(mpm3d, tmp_path / "two", environment={"OMP_NUM_THREADS": "2"})
