@@ -208,6 +208,7 @@ contains
       deallocate (points%history)
       allocate (points%history(body%material%n_history, points%n))
       call body%material%start(points%n, points%x, points%mass, points%volume, points%history)
+      call body%material%prepare(points)
     end associate
   end subroutine read_material
 

@@ -56,7 +56,7 @@ contains
                           &Ma and Huang, Int. J. Numer. Meth. Engng 85 (2011) 498-517', &
                           'contact'//nl//'{'//nl//'    class = "SlurryContact"'//nl// &
                           '    name = "impact"'//nl//'    properties = {0.4}'//nl// &
-                          '    str-properties = {"projectile", "block_0", "block_1"}'//nl//'}')
+                          '    str-properties = {"block_0", "block_1", "projectile"}'//nl//'}')
     call add_slurry_contact_properties(description)
     call description%add_note('The normals are those of the solid as far as it is in the grid: &
                               &SlurryContact_ReflectedBoundary is for solids that touch its faces.')

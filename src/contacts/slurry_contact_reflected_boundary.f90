@@ -33,7 +33,7 @@ contains
                           'contact'//nl//'{'//nl// &
                           '    class = "SlurryContact_ReflectedBoundary"'//nl// &
                           '    name = "impact"'//nl//'    properties = {0.4}'//nl// &
-                          '    str-properties = {"projectile", "block_0", "block_1"}'//nl//'}')
+                          '    str-properties = {"block_0", "block_1", "projectile"}'//nl//'}')
     call add_slurry_contact_properties(description)
     call description%add_note('At nodes on a face of the grid the normal loses its component &
                               &across it. Nodes where nothing is left of it have no contact, as &

@@ -26,6 +26,7 @@ module mpm_breakage_mechanics_sand
   contains
     procedure, nopass :: describe => breakage_mechanics_sand_describe
     procedure :: init => breakage_mechanics_sand_init
+    procedure :: grains => breakage_mechanics_sand_grains
     procedure :: start => breakage_mechanics_sand_start
     procedure :: update_stress => breakage_mechanics_sand_update_stress
     procedure :: assign_stress => breakage_mechanics_sand_assign_stress
@@ -115,6 +116,19 @@ contains
                              &as fast with B as the highest one')
     end if
   end subroutine breakage_mechanics_sand_init
+
+  !> Density and friction of the grains.
+  pure subroutine breakage_mechanics_sand_grains(self, density, friction)
+    !> The material.
+    class(breakage_mechanics_sand_t), intent(in) :: self
+    !> Density of the grains themselves. [kg/m3]
+    real(wp), intent(out) :: density
+    !> Largest ratio of shear stress to pressure at rest.
+    real(wp), intent(out) :: friction
+
+    density = self%law%density
+    friction = self%law%friction/sqrt(3.0_wp)
+  end subroutine breakage_mechanics_sand_grains
 
   !> Points begin without elastic strain.
   pure subroutine breakage_mechanics_sand_start(self, n, x, mass, volume, history)

@@ -43,8 +43,14 @@ module mpm_material
     procedure :: assign_pressure => material_assign_pressure
     !> TYPE 4: express tensors of the memory in the basis of the moved points.
     procedure :: turn_history => material_turn_history
+    !> Ask the points to keep what `correct` needs.
+    procedure :: prepare => material_prepare
+    !> Correct the positions of the points at the end of a step.
+    procedure :: correct => material_correct
     !> Largest diffusivity of momentum in a block of points.
     procedure :: diffusivity => material_diffusivity
+    !> Density and friction of grains, of laws that describe some.
+    procedure :: grains => material_grains
     !> Take from another body what the memory of the points has of it.
     procedure :: observe => material_observe
     !> Send the fields of the memory when a frame is written.
@@ -247,6 +253,50 @@ contains
     end associate
     diffusivity = 0.0_wp
   end function material_diffusivity
+
+  !> Ask the points to keep what `correct` needs, when they are set up: most laws need nothing.
+  subroutine material_prepare(self, points)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> The points.
+    class(points_t), intent(inout) :: points
+
+    associate (unused => self, unused_points => points)
+    end associate
+  end subroutine material_prepare
+
+  !> Correct the positions of the points: most laws leave them where their motion takes them.
+  subroutine material_correct(self, grid, points, dt, threads)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> The points, moved.
+    class(points_t), intent(inout) :: points
+    !> Length of the step. [s]
+    real(wp), intent(in) :: dt
+    !> Number of threads.
+    integer, intent(in) :: threads
+
+    associate (unused => self, unused_grid => grid, unused_points => points, unused_dt => dt, &
+               unused_threads => threads)
+    end associate
+  end subroutine material_correct
+
+  !> Density and friction of grains: most laws describe none.
+  pure subroutine material_grains(self, density, friction)
+    !> The material.
+    class(material_t), intent(in) :: self
+    !> Density of the grains themselves; 0 of other materials. [kg/m3]
+    real(wp), intent(out) :: density
+    !> Largest ratio of shear stress to pressure at rest.
+    real(wp), intent(out) :: friction
+
+    associate (unused => self)
+    end associate
+    density = 0.0_wp
+    friction = 0.0_wp
+  end subroutine material_grains
 
   !> Take from another body what the memory of the points has of it: most laws know of none.
   !!

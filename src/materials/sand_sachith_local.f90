@@ -42,6 +42,7 @@ module mpm_sand_sachith_local
   contains
     procedure, nopass :: describe => sand_sachith_local_describe
     procedure :: init => sand_sachith_local_init
+    procedure :: grains => sand_sachith_local_grains
     procedure :: update_stress => sand_sachith_local_update_stress
     procedure :: assign_stress => sand_sachith_local_assign_stress
     procedure :: wave_speed => sand_sachith_local_wave_speed
@@ -134,6 +135,19 @@ contains
       self%by_density = .true.
     end do
   end subroutine sand_sachith_local_init
+
+  !> Density and friction of the grains.
+  pure subroutine sand_sachith_local_grains(self, density, friction)
+    !> The material.
+    class(sand_sachith_local_t), intent(in) :: self
+    !> Density of the grains themselves. [kg/m3]
+    real(wp), intent(out) :: density
+    !> Largest ratio of shear stress to pressure at rest.
+    real(wp), intent(out) :: friction
+
+    density = self%grain_density
+    friction = self%friction
+  end subroutine sand_sachith_local_grains
 
   !> Advance the stress of a block of points over one step.
   pure subroutine sand_sachith_local_update_stress(self, n, dt, gradient, mass, volume, stress, &

@@ -12,6 +12,7 @@ module mpm_slurry_fluid_phase
   use mpm_points, only: points_t
   use mpm_pore_fluid, only: observe_grains
   use mpm_properties, only: properties_t
+  use mpm_shear_shift, only: shift_by_shear
   implicit none
   private
   public :: slurry_fluid_phase_t
@@ -28,11 +29,17 @@ module mpm_slurry_fluid_phase
     real(wp) :: viscosity = 0.0_wp
     !> Density of the grains. [kg/m3]
     real(wp) :: grain_density = 0.0_wp
+    !> Length h of the shift of points. [m]
+    real(wp) :: length = 0.0_wp
+    !> Strength alpha of the shift of points; 0, there is none.
+    real(wp) :: strength = 0.0_wp
   contains
     procedure, nopass :: describe => slurry_fluid_phase_describe
     procedure :: init => slurry_fluid_phase_init
     procedure :: start => slurry_fluid_phase_start
     procedure :: observe => slurry_fluid_phase_observe
+    procedure :: prepare => slurry_fluid_phase_prepare
+    procedure :: correct => slurry_fluid_phase_correct
     procedure :: update_stress => slurry_fluid_phase_update_stress
     procedure :: assign_stress => slurry_fluid_phase_assign_stress
     procedure :: wave_speed => slurry_fluid_phase_wave_speed
@@ -60,10 +67,10 @@ contains
     call description%add_real('eta_0', 'Pa s', 'viscosity of the pure fluid', lower=0.0_wp)
     call description%add_real('rho_s', 'kg/m3', 'density of the grains; not used without a body &
                               &of grains', above=0.0_wp)
-    call description%add_real('h', 'm', 'length of the shift of points; not used without it', &
+    call description%add_real('h', 'm', 'length of the shift of points, about that of a cell', &
                               default=0.0_wp, lower=0.0_wp)
-    call description%add_real('alpha', '-', 'strength of the shift of points: 0, there is none', &
-                              default=0.0_wp, lower=0.0_wp)
+    call description%add_real('alpha', '-', 'strength of the shift of points, about 1; 0, there is &
+                              &none', default=0.0_wp, lower=0.0_wp)
     call description%add_string('solid', 'body of the grains; without one the porosity is 1', &
                                 default='')
     call description%add_integer('solid_id', 'that body by its number, from 0, when no name is &
@@ -73,9 +80,11 @@ contains
                               &masses of the points are those of the fluid in their volume, n &
                               &rho_f V.')
     call description%add_note('The rate of volume comes from the velocities that strain rates are &
-                              &formed from, whichever the solver takes. Points stay where the &
-                              &motion takes them: ImprovedQuadraturePoints has rules that shift &
-                              &points, in place of h and alpha.')
+                              &formed from, whichever the solver takes.')
+    call description%add_note('alpha shifts points out of places where they are too many, at the &
+                              &rate of shear. In mpm_3d rotation shifts them as well. &
+                              &ImprovedQuadraturePoints has other rules for any material; with &
+                              &one of them leave alpha out.')
     call description%add_note('A pressure that a body assigns changes J and leaves mass and &
                               &volume.')
   end subroutine slurry_fluid_phase_describe
@@ -88,7 +97,7 @@ contains
     type(kinematics_t), intent(in) :: kin
     !> Checked properties.
     type(properties_t), intent(in) :: properties
-    !> A shift of points.
+    !> A shift of points without its length.
     type(error_t), allocatable, intent(out) :: error
 
     self%kin = kin
@@ -97,9 +106,11 @@ contains
     self%viscosity = properties%real('eta_0')
     self%grain_density = properties%real('rho_s')
     call self%partner%ask(properties, 'solid', 'solid_id')
-    if (properties%real('alpha') > 0.0_wp) then
-      call properties%reject('alpha', 'points are not shifted', error, 'leave h and alpha out, or &
-                             &give alpha = 0; ImprovedQuadraturePoints shifts points')
+    self%length = properties%real('h')
+    self%strength = properties%real('alpha')
+    if (self%strength > 0.0_wp .and. .not. self%length > 0.0_wp) then
+      call properties%reject('h', 'a shift of points needs its length h', error, 'give the size of &
+                             &a cell, or alpha = 0')
     end if
   end subroutine slurry_fluid_phase_init
 
@@ -124,6 +135,40 @@ contains
     history(porosity, :) = 1.0_wp
     history(excess, :) = 0.0_wp
   end subroutine slurry_fluid_phase_start
+
+  !> Ask the points for velocity gradients and the sums of shifts, if they are shifted.
+  subroutine slurry_fluid_phase_prepare(self, points)
+    !> The material.
+    class(slurry_fluid_phase_t), intent(in) :: self
+    !> The points.
+    class(points_t), intent(inout) :: points
+
+    if (.not. self%strength > 0.0_wp) return
+    points%needs_gradient = .true.
+    if (.not. allocated(points%gradient)) then
+      allocate (points%gradient(points%kin%ngrad, points%n), source=0.0_wp)
+    end if
+    if (.not. allocated(points%shifted)) then
+      allocate (points%shifted(points%kin%dim, points%n), source=0.0_wp)
+    end if
+  end subroutine slurry_fluid_phase_prepare
+
+  !> Shift the points, if asked for.
+  subroutine slurry_fluid_phase_correct(self, grid, points, dt, threads)
+    !> The material.
+    class(slurry_fluid_phase_t), intent(in) :: self
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> The points, moved.
+    class(points_t), intent(inout) :: points
+    !> Length of the step. [s]
+    real(wp), intent(in) :: dt
+    !> Number of threads.
+    integer, intent(in) :: threads
+
+    if (.not. self%strength > 0.0_wp) return
+    call shift_by_shear(points, grid, self%length, self%strength, dt, threads)
+  end subroutine slurry_fluid_phase_correct
 
   !> Take porosity and rate of volume from the grains.
   subroutine slurry_fluid_phase_observe(self, grid, points, nodes, remapped, threads, &

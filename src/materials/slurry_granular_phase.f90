@@ -34,6 +34,7 @@ module mpm_slurry_granular_phase
     procedure :: init => slurry_granular_phase_init
     procedure :: start => slurry_granular_phase_start
     procedure :: observe => slurry_granular_phase_observe
+    procedure :: grains => slurry_granular_phase_grains
     procedure :: update_stress => slurry_granular_phase_update_stress
     procedure :: assign_stress => slurry_granular_phase_assign_stress
     procedure :: wave_speed => slurry_granular_phase_wave_speed
@@ -187,6 +188,19 @@ contains
     end if
     points%history(self%at_viscosity, :n) = self%law%viscosity*share
   end subroutine slurry_granular_phase_observe
+
+  !> Density and friction of the grains.
+  pure subroutine slurry_granular_phase_grains(self, density, friction)
+    !> The material.
+    class(slurry_granular_phase_t), intent(in) :: self
+    !> Density of the grains themselves. [kg/m3]
+    real(wp), intent(out) :: density
+    !> Largest ratio of shear stress to pressure at rest.
+    real(wp), intent(out) :: friction
+
+    density = self%law%grain_density
+    friction = self%law%friction
+  end subroutine slurry_granular_phase_grains
 
   !> Set nodes that the fluid reaches to 1.
   pure subroutine mark_wet(window, fluid, wet)

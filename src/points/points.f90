@@ -621,6 +621,7 @@ contains
       call store%put('reference_volume', self%reference_volume)
     end if
     if (allocated(self%smoothed_volume)) call store%put('smoothed_volume', self%smoothed_volume)
+    if (allocated(self%shifted)) call store%put('shifted', self%shifted)
     if (allocated(self%domains)) then
       call store%enter('domains')
       call self%domains%save(store)
@@ -680,6 +681,7 @@ contains
       call store%get('reference_volume', self%reference_volume)
     end if
     if (store%has('smoothed_volume')) call store%get('smoothed_volume', self%smoothed_volume)
+    if (store%has('shifted')) call store%get('shifted', self%shifted)
     if (allocated(self%domains)) then
       call store%enter('domains')
       call self%domains%restore(store)

@@ -322,8 +322,12 @@ contains
     integer :: i
 
     do i = 1, size(model%bodies)
-      if (.not. model%bodies(i)%body%active) cycle
-      call model%bodies(i)%body%points%correct(model%step + 1, dt, model%threads)
+      associate (body => model%bodies(i)%body)
+        if (.not. body%active) cycle
+        call body%points%correct(model%step + 1, dt, model%threads)
+        if (.not. allocated(body%material)) cycle
+        call body%material%correct(model%grid, body%points, dt, model%threads)
+      end associate
     end do
   end subroutine explicit_solver_correct
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 from meshes import CELLS, MESH, TRIANGLES, needs_mesh, type_of, write_mesh
-from scene import DIM, Run, block, huang, write_points
+from scene import DIM, MATERIALS, Run, block, huang, write_points
 
 DT = 1e-3
 STEPS = 60
@@ -156,6 +156,10 @@ def write_scene(folder: Path, role: str = "", example: str = "", **saving: float
         chosen = {**parts, "points": parts["points"] if name == "block_0" else PARTS["points"]}
         if name == "block_0" and "ContactRigid" in example:
             chosen["boundary"] = ASSIGNED
+        for class_name, materials in MATERIALS.items():
+            if f'"{class_name}"' in example:
+                chosen["material"] = materials.get(name, chosen["material"])
+                sections["contact"] = ""
         text = "\n".join(chosen.values()).replace("NAME", name)
         bodies.append(f'body\n{{\n    class = "DefaultBody"\n    name = "{name}"\n{text}\n}}')
         if dim == 3:

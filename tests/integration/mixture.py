@@ -28,6 +28,8 @@ class Slurry:
     diameter: float = 2e-3
     viscosity: float = 0.1
     bulk: float = 1e5
+    #: Length and strength of the shift of the fluid's points.
+    shift: Sequence[float] = ()
     gravity: float = GRAVITY
     #: Density of the grains.
     grain: float = RHO_GRAIN
@@ -91,7 +93,7 @@ class Slurry:
     material-props = {{{numbers([*law, eta, d, RHO_FLUID])}}}
     material-str-props = {{"water"}}"""
         water = f"""material-class = "SlurryFluidPhase"
-    material-props = {{{numbers([self.bulk, eta, self.grain])}}}
+    material-props = {{{numbers([self.bulk, eta, self.grain, *self.shift])}}}
     material-str-props = {{"sand"}}"""
         sections = [
             f"job {{ dt = {self.dt!r} TYPE = {self.sim_type} }}\n",

@@ -27,6 +27,16 @@ EPSILON = float(np.finfo(np.float64).eps)
 #: Relative rounding error of one step: sums over at most 2^3 nodes and the points of 2^3 cells.
 ROUNDING = 64.0 * EPSILON
 
+#: Materials of the bodies that the example of a class speaks of, where not any material will do.
+MATERIALS = {
+    "ExplicitMixtureSolver": {
+        "block_0": """    material-class = "SlurryGranularPhase"
+    material-props = {1e5, 0.3, 0.38, 0.64, 1.23, 0.31, 4.7, 0, 0.585, 2700, 1e-3, 1e-3, 1000}""",
+        "block_1": """    material-class = "BarotropicViscousFluid"
+    material-props = {1e5, 1e-3}""",
+    }
+}
+
 
 def block(
     sim_type: int,

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from checkpoints import FISH, MIXTURE
 from meshes import CELLS, MESH, TRIANGLES, needs_mesh, type_of, write_mesh
-from scene import DIM, NVEL, Array, Run
+from scene import DIM, MATERIALS, NVEL, Array, Run
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference"
@@ -190,9 +190,10 @@ def write_example(role: str, example: str, folder: Path) -> None:
             assert plain in sections["serializer"]
             more = "properties = {0, history_rate = 10}"
             sections["serializer"] = sections["serializer"].replace(plain, more)
+    wanted = next((own for name, own in MATERIALS.items() if f'"{name}"' in example), {})
     bodies = [
         f'body\n{{\n    class = "DefaultBody"\n    name = "{name}"\n'
-        + "\n".join(parts.values())
+        + "\n".join({**parts, "material": wanted.get(name, parts["material"])}.values())
         + "\n}"
         for name in BODIES
     ]

@@ -5,12 +5,14 @@ module mpm_mixture_fixture
   use mpm_errors, only: error_t
   use mpm_explicit_steps, only: locate_points, map_to_nodes
   use mpm_kinds, only: wp
+  use mpm_material_fixture, only: material_point_t
   use mpm_model, only: model_t
   use mpm_model_fixture, only: lattice_table, make_body, make_model, moving
   use mpm_properties, only: make_properties, properties_t
   implicit none
   private
-  public :: is_inner, make_mixture, map_bodies, packing, rho_fluid, rho_grain, set_up_contact
+  public :: give_material, is_inner, make_mixture, map_bodies, set_up_contact
+  public :: packing, rho_fluid, rho_grain
 
   !> Densities of the materials. [kg/m3]
   real(wp), parameter :: rho_grain = 2500.0_wp, rho_fluid = 1000.0_wp
@@ -89,5 +91,28 @@ contains
     if (allocated(error)) return
     call contact%init(model%grid, model%bodies, properties, error)
   end subroutine set_up_contact
+
+  !> Give a body a material, made from text that must be right.
+  subroutine give_material(model, position, class_name, text)
+    !> The model.
+    type(model_t), intent(inout) :: model
+    !> Position of the body in the model's list.
+    integer, intent(in) :: position
+    !> Class of the material.
+    character(*), intent(in) :: class_name
+    !> Property lists as in a config.
+    character(*), intent(in) :: text
+    type(material_point_t) :: point
+
+    call point%make(class_name, model%kin%sim_type, text, 1000.0_wp)
+    if (len(point%failure) > 0) error stop 'bad material'
+    associate (body => model%bodies(position)%body, points => model%bodies(position)%body%points)
+      if (allocated(body%material)) deallocate (body%material)
+      allocate (body%material, source=point%material)
+      deallocate (points%history)
+      allocate (points%history(body%material%n_history, points%n))
+      call body%material%start(points%n, points%x, points%mass, points%volume, points%history)
+    end associate
+  end subroutine give_material
 
 end module mpm_mixture_fixture
