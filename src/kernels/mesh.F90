@@ -440,12 +440,13 @@ contains
     !> The cell, from 1; -1 outside of the mesh and for NaN.
     integer :: cell
     real(wp) :: value(0:3), margin
-    integer :: b, i
+    integer :: b, i, d
 
     cell = -1
     margin = self%slack*self%h
-    if (.not. all(x >= self%lower(:self%dim) - margin .and. &
-                  x <= self%upper(:self%dim) + margin)) return
+    do d = 1, self%dim
+      if (.not. (x(d) >= self%lower(d) - margin .and. x(d) <= self%upper(d) + margin)) return
+    end do
     if (present(guess)) then
       if (guess >= 1 .and. guess <= self%n_cells) then
         call self%values(guess, x, value)
@@ -499,18 +500,28 @@ contains
     real(wp), intent(in) :: x(self%dim)
     !> Values, in the order of the nodes of the cell.
     real(wp), intent(out) :: value(0:self%dim)
-    real(wp) :: r
-    integer :: k, d
+    real(wp) :: r(3)
+    integer :: k
 
-    value(0) = 1.0_wp
-    do k = 1, self%dim
-      value(k) = 0.0_wp
-      do d = 1, self%dim
-        r = x(d) - self%affine(d, 0, cell)
-        value(k) = value(k) + self%affine(d, k, cell)*r
+    ! Written out: this is the innermost loop of the search.
+    select case (self%dim)
+    case (1)
+      value(1) = self%affine(1, 1, cell)*(x(1) - self%affine(1, 0, cell))
+      value(0) = 1.0_wp - value(1)
+    case (2)
+      r(:2) = x(:2) - self%affine(:2, 0, cell)
+      do k = 1, 2
+        value(k) = self%affine(1, k, cell)*r(1) + self%affine(2, k, cell)*r(2)
       end do
-      value(0) = value(0) - value(k)
-    end do
+      value(0) = 1.0_wp - value(1) - value(2)
+    case default
+      r = x(:3) - self%affine(:3, 0, cell)
+      do k = 1, 3
+        value(k) = self%affine(1, k, cell)*r(1) + self%affine(2, k, cell)*r(2) &
+                   + self%affine(3, k, cell)*r(3)
+      end do
+      value(0) = 1.0_wp - value(1) - value(2) - value(3)
+    end select
   end subroutine mesh_values
 
   !> Keep functions a few roundings above 0, so that every node of a point's cell has a velocity.

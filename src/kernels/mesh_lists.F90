@@ -124,8 +124,8 @@ contains
     integer, intent(inout) :: lo
     !> Highest node so far.
     integer, intent(inout) :: hi
-    real(wp) :: corner(mesh%dim)
-    integer :: p, c, distinct, guess
+    real(wp) :: corner(3)
+    integer :: p, c, d, distinct, guess
 
     do p = 1, n
       distinct = 1
@@ -133,15 +133,20 @@ contains
         corner_cell(:, p) = 0
       else
         do c = 1, 2**mesh%dim
-          corner = x(:, p) + 0.5_wp*extent(p)*signs(mesh%dim, c)
+          do d = 1, mesh%dim
+            corner(d) = x(d, p) + 0.5_wp*extent(p)*sign_of(d, c)
+          end do
           guess = corner_cell(c, p)
           if (guess <= 0) guess = cell(p)
-          corner_cell(c, p) = mesh%find(corner, guess)
+          corner_cell(c, p) = mesh%find(corner(:mesh%dim), guess)
           if (corner_cell(c, p) < 0) exit
         end do
         if (c > 2**mesh%dim) then
           do c = 2, 2**mesh%dim
-            if (all(corner_cell(:c - 1, p) /= corner_cell(c, p))) distinct = distinct + 1
+            do d = 1, c - 1
+              if (corner_cell(d, p) == corner_cell(c, p)) exit
+            end do
+            if (d == c) distinct = distinct + 1
           end do
           do c = 1, 2**mesh%dim
             lo = min(lo, mesh%span(1, corner_cell(c, p)))
@@ -186,20 +191,17 @@ contains
     holds_box = holds_box .and. value(0) >= half*sum(abs(g))
   end function holds_box
 
-  !> Signs of a corner, x fastest.
-  pure function signs(dim, corner)
-    !> Dimensions.
-    integer, intent(in) :: dim
+  !> Sign of a corner in a direction, x fastest.
+  elemental function sign_of(d, corner)
+    !> The direction.
+    integer, intent(in) :: d
     !> Number of the corner, from 1.
     integer, intent(in) :: corner
-    !> -1 or 1 in each direction.
-    real(wp) :: signs(dim)
-    integer :: d
+    !> -1 or 1.
+    real(wp) :: sign_of
 
-    do d = 1, dim
-      signs(d) = merge(1.0_wp, -1.0_wp, btest(corner - 1, d - 1))
-    end do
-  end function signs
+    sign_of = merge(1.0_wp, -1.0_wp, btest(corner - 1, d - 1))
+  end function sign_of
 
   !> Set the entries of a block of points that have the functions of their cells.
   pure subroutine fill(mesh, n, x, cell, lo, node, basis)
@@ -280,15 +282,19 @@ contains
     integer, contiguous, intent(inout) :: node(:)
     !> Values and gradients. [-, 1/m] (1 + dim, entries)
     real(wp), contiguous, intent(inout) :: basis(:, :)
-    real(wp) :: value(0:3), s(3), weight
+    real(wp) :: value(0:3), s(3), at(3), weight, slope
     integer :: distinct(8), begin(8), known, c, k, e, d
 
     weight = 0.5_wp**mesh%dim
+    slope = weight/half
     known = 0
     basis = 0.0_wp
     do c = 1, 2**mesh%dim
       associate (cell => corner_cell(c))
-        s(:mesh%dim) = signs(mesh%dim, c)
+        do d = 1, mesh%dim
+          s(d) = sign_of(d, c)
+          at(d) = x(d) + half*s(d)
+        end do
         do k = 1, known
           if (distinct(k) == cell) exit
         end do
@@ -299,12 +305,12 @@ contains
           node(begin(k) + 1:begin(k) + mesh%dim + 1) = mesh%node(:, cell) - lo + 1
         end if
         e = begin(k)
-        call mesh%values(cell, x + half*s(:mesh%dim), value)
+        call mesh%values(cell, at, value)
         call off_edge(value(:mesh%dim))
         do k = 0, mesh%dim
           basis(1, e + k + 1) = basis(1, e + k + 1) + weight*value(k)
           do d = 1, mesh%dim
-            basis(d + 1, e + k + 1) = basis(d + 1, e + k + 1) + weight*value(k)*s(d)/half
+            basis(d + 1, e + k + 1) = basis(d + 1, e + k + 1) + slope*value(k)*s(d)
           end do
         end do
       end associate

@@ -26,7 +26,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copytree(
             CONFIGS.parent / name,
             folder / name,
-            ignore=shutil.ignore_patterns("*.points", "__pycache__"),
+            ignore=shutil.ignore_patterns("*.points", "*.msh", "__pycache__"),
         )
     for script in sorted(folder.glob("configs/*/make_points.sh")):
         made = subprocess.run(

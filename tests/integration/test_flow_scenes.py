@@ -20,7 +20,7 @@ GRAVITY = 9.81
 def run_scene(run: Run, name: str, body: str, folder: Path) -> tuple[list[Frame], str]:
     """Return the frames of the points of a scene, and what the program says."""
     for part in (f"configs/{name}", "mpm_pygen"):
-        ignored = shutil.ignore_patterns("*.points", "__pycache__")
+        ignored = shutil.ignore_patterns("*.points", "*.msh", "__pycache__")
         shutil.copytree(ROOT / part, folder / part, ignore=ignored)
     environment = {**os.environ, "PYTHON": sys.executable, "PYTHONDONTWRITEBYTECODE": "1"}
     script = folder / "configs" / name / "make_points.sh"

@@ -1,4 +1,4 @@
-"""The commands `mpm-pygen scene` and `mpm-pygen check`."""
+"""The commands `mpm-pygen scene`, `mpm-pygen check` and `mpm-pygen box-mesh`."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from mpm_pygen.box_mesh import write_box_mesh
 from mpm_pygen.config import check_config, find_program
 from mpm_pygen.errors import PygenError
 from mpm_pygen.scenes import SCENES
@@ -36,6 +37,23 @@ def add_commands(commands: Any) -> None:
         "-o", "--output", metavar="FOLDER", help="where to write (default: the name of the scene)"
     )
     scene.set_defaults(run=make_scene)
+    mesh = commands.add_parser(
+        "box-mesh", help="Gmsh file of a box cut into triangles or tetrahedra"
+    )
+    mesh.add_argument(
+        "--min", nargs="+", type=float, required=True, metavar="X", help="lower corner"
+    )
+    mesh.add_argument(
+        "--max", nargs="+", type=float, required=True, metavar="X", help="upper corner"
+    )
+    mesh.add_argument(
+        "--cells", nargs="+", type=int, required=True, metavar="N", help="along each side"
+    )
+    mesh.add_argument(
+        "--map", nargs="+", default=[], metavar="F", help="positions as expressions of x y z"
+    )
+    mesh.add_argument("-o", "--output", required=True, metavar="FILE")
+    mesh.set_defaults(run=make_mesh)
     check = commands.add_parser("check", help="let mpm3d check a config without running it")
     check.add_argument("config", metavar="CONFIG")
     check.add_argument("--program", metavar="FILE", help="mpm3d, when it is not on the PATH")
@@ -62,6 +80,21 @@ def make_scene(arguments: argparse.Namespace) -> int:
         print(f"{path}: written, and accepted by mpm3d --check")
     else:
         print(f"{path}: written")
+    return 0
+
+
+def make_mesh(arguments: argparse.Namespace) -> int:
+    """Write a mesh.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Of the command line.
+    """
+    image = [text.strip() for text in arguments.map]
+    n = write_box_mesh(arguments.output, arguments.min, arguments.max, arguments.cells, image)
+    kind = "triangles" if len(arguments.cells) == 2 else "tetrahedra"
+    print(f"{arguments.output}: {n} {kind}")
     return 0
 
 

@@ -197,6 +197,13 @@ class Painter:
             segments = [[(s * x, ys[0]), (s * x, ys[-1])] for s in signs for x in xs]
             segments += [[(s * xs[0], y), (s * xs[-1], y)] for s in signs for y in ys]
             axes.add_collection(LineCollection(segments, colors="0.88", linewidths=0.5, zorder=0))
+        elif self.style.grid:
+            # The nodes of a mesh make no lines.
+            nodes = self.frames.grid_nodes()
+            for sign in signs:
+                axes.plot(
+                    sign * nodes[:, 0], nodes[:, 1], ".", color="0.8", markersize=1.5, zorder=0
+                )
         for body in self.bodies:
             cloud = frame.points(body)
             outlines = self._outlines(cloud, body)[cloud.active]

@@ -197,28 +197,37 @@ class Frames:
             return self._sim_type
         if self.config is not None:
             return self.config.job.sim_type
-        sizes = {1: 0, 2: 1, 4: 2, 8: 3}
-        for body in self.bodies:
-            try:
-                dimension = sizes.get(self[0].nodes(body).cell_size, 0)
-            except PygenError:
-                continue
-            if dimension:
-                return dimension
-        spread = np.ptp(self[0].points(self.bodies[0]).position, axis=0)
-        return max(1, int(np.max(np.flatnonzero(spread), initial=0)) + 1)
-
-    def grid_lines(self) -> list[FloatArray]:
-        """Give the coordinates of the grid's nodes in each direction; none without node files."""
+        sizes = {1: 0, 2: 1, 3: 2, 4: 2, 8: 3}
         for body in self.bodies:
             try:
                 nodes = self[0].nodes(body)
             except PygenError:
                 continue
-            axes = [np.unique(column) for column in nodes.position.T]
-            # Unstructured nodes make no lines.
-            if math.prod(map(len, axes)) == len(nodes):
-                return [axis for axis in axes if len(axis) > 1]
+            dimension = sizes.get(nodes.cell_size, 0)
+            # Tetrahedra have as many corners as pixels.
+            if dimension == 2 and np.ptp(nodes.position[:, 2]) > 0.0:
+                dimension = 3
+            if dimension:
+                return dimension
+        spread = np.ptp(self[0].points(self.bodies[0]).position, axis=0)
+        return max(1, int(np.max(np.flatnonzero(spread), initial=0)) + 1)
+
+    def grid_nodes(self) -> FloatArray:
+        """Give the positions of the grid's nodes; none without node files."""
+        for body in self.bodies:
+            try:
+                return self[0].nodes(body).position
+            except PygenError:
+                continue
+        return np.zeros((0, 3))
+
+    def grid_lines(self) -> list[FloatArray]:
+        """Give the coordinates of the grid's nodes in each direction; none without node files."""
+        nodes = self.grid_nodes()
+        axes = [np.unique(column) for column in nodes.T]
+        # Unstructured nodes make no lines.
+        if len(nodes) > 0 and math.prod(map(len, axes)) == len(nodes):
+            return [axis for axis in axes if len(axis) > 1]
         return []
 
     def read(self, kind: str, body: str, number: int) -> Cloud:
