@@ -71,6 +71,8 @@ class Reader:
             ["bash", "-c", SHELL.format(commands=commands)],
             cwd=self.folder,
             env=self.environment,
+            stdin=subprocess.DEVNULL,
+            start_new_session=True,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             encoding="utf-8",
