@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from mpm_pygen.box_mesh import write_box_mesh
-
-from mpm_pygen import Block, Points, SimulationType, fill, write_points
+from mpm_pygen import Block, Points, SimulationType, fill, write_box_mesh, write_points
 
 #: A Courant number of about 0.1 for the wave speed of the blocks.
 COURANT, WAVE_SPEED = 0.1, 36.7
