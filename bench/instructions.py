@@ -1,4 +1,4 @@
-"""Instructions per point and step of three small scenes: a figure without noise.
+"""Instructions per point and step of small scenes: a figure without noise.
 
 They are counted by valgrind's callgrind with the portable build, whose code does not depend on the
 machine that compiles it.
@@ -15,7 +15,13 @@ from bench.measure import BenchError, command_of, run
 from bench.scenes import SCENE, Case, write_scene
 
 #: Scenes and their numbers of points.
-COUNTED = {"3d-linear": 4000, "3d-cpdi": 4000, "plane-contact": 4000}
+COUNTED = {
+    "3d-linear": 4000,
+    "3d-cpdi": 4000,
+    "plane-contact": 4000,
+    "plane-triangles": 4000,
+    "3d-tetrahedra-cpdi": 4000,
+}
 #: Lengths of the two runs whose difference counts.
 STEPS = (2, 12)
 #: Growth of a count that fails.

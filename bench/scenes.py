@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from mpm_pygen import Block, Points, SimulationType, fill, write_points
+from mpm_pygen import Block, Points, SimulationType, fill, write_box_mesh, write_points
 
 #: A Courant number of about 0.1 for the wave speed of the blocks.
 COURANT, WAVE_SPEED = 0.1, 36.7
+#: Grids that read a mesh: that of the box, its cells cut into triangles or tetrahedra.
+MESHES = ("TriangularGridLinear", "TetrahedralGridLinear")
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,10 @@ SCENES = (
     Scene("3d-linear-xpic-2", 3, 0, transfer="str-properties = {XPIC}"),
     Scene("3d-cpdi-apic", 3, 1, transfer="str-properties = {APIC}"),
     Scene("3d-cpdi-mls", 3, 1, transfer="str-properties = {MLS}"),
+    Scene("plane-triangles", 2, 0, "TriangularGridLinear"),
+    Scene("plane-triangles-cpdi", 2, 1, "TriangularGridLinear"),
+    Scene("3d-tetrahedra", 3, 0, "TetrahedralGridLinear"),
+    Scene("3d-tetrahedra-cpdi", 3, 1, "TetrahedralGridLinear"),
     Scene("plane-contact", 2, 0, bodies=2),
     Scene("3d-contact", 3, 0, bodies=2),
     Scene("3d-cpdi-contact", 3, 1, bodies=2),
@@ -196,6 +202,10 @@ def write_files(
     half_width = [repr(spacing / 2)] if scene.grid == "CartesianUGIMP" else []
     box = ", ".join(["1.0"] * dim + half_width)
     counts = ", ".join([str(cells)] * dim)
+    lists = f"properties = {{{box}}}  int-properties = {{{counts}}}"
+    if scene.grid in MESHES:
+        write_box_mesh(folder / "box.msh", [0.0] * dim, [1.0] * dim, [cells] * dim)
+        lists = "str-properties = {box.msh}"
     frames = "int-properties = {nodes = 0}" if scene.cells else ""
     text = f"""job {{ t = 0  dt = {dt!r}  TYPE = {scene.sim_type} }}
 serializer {{
@@ -203,7 +213,7 @@ serializer {{
 }}
 driver {{ class = DefaultDriver  properties = {{1}} }}
 solver {{ class = {scene.solver}  int-properties = {{{scene.cpdi}, 1}}  {scene.transfer} }}
-grid {{ class = {scene.grid}  properties = {{{box}}}  int-properties = {{{counts}}} }}
+grid {{ class = {scene.grid}  {lists} }}
 """
     for number, body in enumerate(bodies):
         write_points(folder / f"block_{number}.points", body)

@@ -9,6 +9,7 @@ Examples
 8
 """
 
+from mpm_pygen.box_mesh import write_box_mesh
 from mpm_pygen.clouds import Cloud
 from mpm_pygen.config import Body, Config, Job, Object, Parts, check_config, find_program
 from mpm_pygen.config_reader import read_config, read_parts
@@ -77,5 +78,6 @@ __all__ = [
     "slope",
     "wedge",
     "wheel",
+    "write_box_mesh",
     "write_points",
 ]
