@@ -258,6 +258,8 @@ contains
       found = abs(f) <= tolerance*max(abs(p_trial), tau_trial)
       if (all(found)) exit
     end do
+    ! Nothing is left at the largest rate, but for a rounding.
+    tau = merge(tau, 0.0_wp, x < tau_trial*steep)
   end subroutine search_in_step
 
   !> Shear stresses less strengths of plastic shear rates, for many points at a time.
