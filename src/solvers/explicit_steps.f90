@@ -100,7 +100,7 @@ contains
                  &own, or '//way_to_more())
       return
     end if
-    if (allocated(body%points%domains)) then
+    if (allocated(body%points%domains) .and. .not. allocated(body%points%stencil%mesh)) then
       call check_lists(body, window, error)
       if (allocated(error)) return
     end if
