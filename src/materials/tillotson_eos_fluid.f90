@@ -186,6 +186,7 @@ contains
 
     call strain_rates(self%kin, n, 1.0_wp, gradient, rate, trace)
     first_bad = 0
+    good = .true.
     do i = 1, n
       before = -(stress(1, i) + stress(2, i) + stress(3, i))/3.0_wp
       rho = mass(i)/volume(i)
@@ -207,7 +208,7 @@ contains
       end if
       stress(1:3, i) = stress(1:3, i) - p
     end do
-    if (.not. good .and. n > 0) first_bad = min(i, n)
+    if (.not. good) first_bad = i
   end subroutine tillotson_eos_fluid_update_stress
 
   !> Energy and pressure at the end of a step: E = E_n + heat - (P_n + P(rho, E)) dv/2.
