@@ -66,7 +66,12 @@ CHAPTERS = {
         "docs/citing",
     ],
     "Scenes and tools": ["docs/scenes", "configs/README", "mpm_pygen/README"],
-    "Evidence": ["docs/verification", "docs/verification/README", "docs/performance"],
+    "Evidence": [
+        "docs/which_method",
+        "docs/verification",
+        "docs/verification/README",
+        "docs/performance",
+    ],
 }
 #: Names in the margin, where they differ from those of the pages.
 TITLES = {
