@@ -400,28 +400,44 @@ contains
     exact = .true.
   end subroutine fish_random_sample_driver_plan
 
-  !> Save which run it is and how far the table has come.
+  !> Save which run it is, how far the table has come, and the start that other runs go back to.
   subroutine fish_random_sample_driver_save(self, store)
     !> The driver.
     class(fish_random_sample_driver_t), intent(in) :: self
     !> Where to.
     class(store_t), intent(inout) :: store
+    integer :: i
 
     call store%put('sample', self%sample)
     call store%put('done', self%n_done)
     call self%file%save(store)
+    if (.not. allocated(self%start)) return
+    do i = 1, size(self%start)
+      call store%enter('start_'//to_text(i - 1))
+      call store%put('active', self%start(i)%active)
+      call self%start(i)%points%save(store)
+      call store%leave()
+    end do
   end subroutine fish_random_sample_driver_save
 
-  !> Take back which run it is and how far the table has come.
+  !> Take back which run it is, how far the table has come, and the start.
   subroutine fish_random_sample_driver_restore(self, store)
     !> The driver.
     class(fish_random_sample_driver_t), intent(inout) :: self
     !> Where from.
     class(store_t), intent(inout) :: store
+    integer :: i
 
     call store%get('sample', self%sample)
     call store%get('done', self%n_done)
     call self%file%restore(store)
+    if (.not. allocated(self%start)) return
+    do i = 1, size(self%start)
+      call store%enter('start_'//to_text(i - 1))
+      call store%get('active', self%start(i)%active)
+      call self%start(i)%points%restore(store)
+      call store%leave()
+    end do
   end subroutine fish_random_sample_driver_restore
 
 end module mpm_fish_random_sample_driver

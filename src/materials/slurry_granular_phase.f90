@@ -247,7 +247,7 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a stress; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: trial(n), tau(n), factor(n), pressure(n), kept(n), phi(n), rate(n)
+    real(wp) :: trial(n), tau(n), factor(n), pressure(n), kept(n), phi(n), rate(n), viscosity(n)
 
     call spin_stress(self%kin, n, dt, gradient, stress)
     call add_strain(self%kin, n, dt, self%law%bulk - 2.0_wp*self%law%shear/3.0_wp, self%law%shear, &
@@ -257,8 +257,8 @@ contains
     if (first_bad > 0) return
     phi = mass/(volume*self%law%grain_density)
     rate = history(2, :)
-    call self%law%solve_block(n, dt, history(self%at_viscosity, :), phi, trial, tau, pressure, &
-                              kept, rate, first_bad)
+    viscosity = history(self%at_viscosity, :)
+    call self%law%solve_block(n, dt, viscosity, phi, trial, tau, pressure, kept, rate, first_bad)
     if (first_bad > 0) return
     factor = 1.0_wp
     where (tau > 0.0_wp) factor = kept/tau

@@ -95,6 +95,10 @@ contains
 
     associate (unused => properties)
     end associate
+    if (allocated(self%kept)) then
+      call self%revive(grid%kin)
+      return
+    end if
     if (grid%kin%dim == 1) then
       call raise(error, err_input, 'GmshPoints are for TYPE 2 to 5', file=config_file, &
                  hint='use CartesianPoints')
