@@ -32,6 +32,7 @@ include_patterns = [
     "docs/**.md",
     "configs/**README.md",
     "mpm_pygen/README.md",
+    "tests/fuzz/README.md",
     "tests/pfunit/README.md",
 ]
 exclude_patterns = ["build", "docs/reference/notes", "docs/manual", "output", ".git"]

@@ -156,7 +156,7 @@ contains
     end do
   end subroutine count_points
 
-  !> Turn numbers of points into the numbers of those before: of earlier cells, and of earlier parts.
+  !> Turn numbers of points into those of the points before, in earlier cells and earlier parts.
   pure subroutine sum_up(cells, parts, row_size, begin, row_offset)
     !> Number of cells.
     integer, intent(in) :: cells

@@ -10,7 +10,8 @@
 !! exp(dt tr L) as the volume is, and a spin rotates.
 module mpm_deformation
   use mpm_kinds, only: wp
-  use mpm_kinematics, only: expand_gradient, kinematics_t, type_1d, type_axisymmetric, type_plane_strain
+  use mpm_kinematics, only: expand_gradient, kinematics_t, type_1d, type_axisymmetric, &
+                            type_plane_strain
   implicit none
   private
   public :: advance_deformation, advance_deformations, deformation_size, determinant
