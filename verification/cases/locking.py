@@ -183,7 +183,7 @@ the swing.
 With *smoothed volumes* (`smoothing`) the points of a cell have one change of volume. Of the strain
 $\kappa(y - y_c)$ its deviator is left, $\pm\kappa(y - y_c)/2$ along and across, so that $G$ takes
 the place of $M$: no locking at any $\nu$, and a beam a little too soft, by
-$[1 - (1 - 1/n^2)(1 - \nu)](h/H)^2$.
+$[1 - (1 - 1/n^2)(1 - \nu)]\,(h/H)^2$.
 """,
     source="Energy of bilinear cells derived here; theory of beams: Timoshenko",
     scene=scene,
