@@ -86,7 +86,7 @@ def judge(r: Results) -> list[Finding]:
     amplitude = r.first.number("amplitude", 1e-6)
     found = judge_start(r, WAVE_NUMBER * amplitude) + halvings(r, "u_l2", "v_l2", "stress_l2")
     for p, m in r:
-        if is_linear(p, p.cells):
+        if is_linear(p, p.cells) and is_followed(p):
             frames = frames_of(p)
             found += judge_modes(p, m, p.cells, steps_of(p, p.cells, frames), frames)
         if "own_program" in m:
@@ -112,6 +112,14 @@ def judge(r: Results) -> list[Finding]:
     return found
 
 
+def is_followed(p: Parameters) -> bool:
+    """Tell whether linear steps are written out: not those of affine fields of splines at walls.
+
+    The waves of `scheme_wave` have them without walls.
+    """
+    return not (p.mapping in ("quadratic", "cubic") and p.scheme.transfer in ("APIC", "MLS"))
+
+
 def judge_small(r: Results) -> list[Finding]:
     """Judge orders: 2; stresses 1, by gradients of cells away from their middles."""
     reason = "lumped masses: dispersion of order 2 with every basis"
@@ -122,13 +130,21 @@ def judge_small(r: Results) -> list[Finding]:
         return fitted(r, "u_l2", 0.75, 1.1, reason, first=32)
     if scheme.solver == "USF" and not scheme.staggered:
         reason = "stress updated first: displacements lead by a step, dt = C h/c: order 1"
-        return fitted(r, "u_l2", 0.85, 1.3, reason, first=32)
+        # The dispersion, with kappa up to 2.5 times that of hats, takes some of the lead back.
+        least = 0.75 if r.first.mapping in ("quadratic", "cubic") else 0.85
+        return fitted(r, "u_l2", least, 1.3, reason, first=32)
     last = 128 if r.first.number("amplitude", 1e-6) > 1e-6 else 10**9
     # Light nodes next to the walls of cubic functions, of order h (kh)**2.
     least = 1.8 if r.first.mapping == "cubic" else 1.9
     found = fitted(r, "u_l2", least, 2.05, reason, first=8, last=last)
     if r.first.ppc == 1:
         return found + fitted(r, "stress_l2", 1.85, 2.05, "points in the middles of cells", 16)
+    if r.first.mapping == "quadratic" and scheme.transfer == "MLS":
+        reason = "third moments of quadratic functions are not 0: fitted slopes of order 1"
+        return found + fitted(r, "stress_l2", 0.95, 1.4, reason, first=16)
+    if r.first.mapping == "cubic" and scheme.transfer in ("MLS", "XPIC"):
+        reason = "order 2 inside, 1 in the cells next to walls, which is 3/2 in the mean square"
+        return found + fitted(r, "stress_l2", 1.4, 2.05, reason, first=16)
     if r.first.mapping in ("quadratic", "cubic"):
         reason = "splines: slopes of order 2 at every place"
         return found + fitted(r, "stress_l2", 1.85, 2.05, reason, first=16)
