@@ -19,6 +19,8 @@ SHORT = 5
 GUESS = 60e-9
 #: Seconds between two looks at a process that runs.
 POLL = 0.002
+#: Simulated time of a run at most: blocks of few points would fall to the floor. [s]
+DURATION = 0.05
 #: Frames per second of simulated time with which the share of the frames is stated. [1/s]
 FRAME_RATE = 60.0
 
@@ -99,7 +101,7 @@ def measure(
 ) -> dict[str, object]:
     """Measure one case; `clock` is `wall` or `cpu`."""
     per_step = GUESS * case.points
-    steps = SHORT + max(10, round(seconds / per_step))
+    steps = SHORT + max(10, min(round(seconds / per_step), int(DURATION / case.dt)))
     samples, set_up, memory = [], [], 0
     for _ in range(repeat):
         low = run(command_of(program, case, SHORT, threads, "-q"), case.folder)

@@ -128,7 +128,7 @@ SCENES = (
         "fish",
         "Fish",
         "E = 1e6, nu = 0.3, alpha_h = 0.02, alpha_a = 0.05, alpha_t = 0.1, beta_h = 6.28, "
-        "beta_a = 6.28, beta_t = 6.28, gamma_h = 0, gamma_a = 0.5, gamma_t = 1",
+        "beta_a = 6.28, beta_t = 6.28, gamma_h = 0, gamma_a = 0, gamma_t = 0",
         1000.0,
     ),
 )
