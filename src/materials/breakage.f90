@@ -70,26 +70,88 @@ module mpm_breakage
     real(wp) :: porosity = 0.0_wp
   end type breakage_state_t
 
+  !> Yield of a state and what it is made of.
+  type :: level_t
+    !> Elastic at and below 0; -1 without stress, 1 under shear alone.
+    real(wp) :: y = -1.0_wp
+    !> -tr T/3. [Pa]
+    real(wp) :: p = 0.0_wp
+    !> sqrt(3 s:s/2). [Pa]
+    real(wp) :: q = 0.0_wp
+    !> Share of the energy to crush that is there.
+    real(wp) :: free = 0.0_wp
+    !> 1 - B.
+    real(wp) :: left = 1.0_wp
+    !> Relative density.
+    real(wp) :: r = 0.0_wp
+    !> Ratio of stresses due to dilation.
+    real(wp) :: dilatancy = 0.0_wp
+    !> Largest q without crushing. [Pa]
+    real(wp) :: bound = 0.0_wp
+  end type level_t
+
+  !> A right angle.
+  real(wp), parameter :: quarter_turn = acos(0.0_wp)
+
 contains
+
+  !> Components xx yy zz xy yz zx of a symmetric tensor.
+  pure function six_of(tensor) result(six)
+    !> The tensor.
+    real(wp), intent(in) :: tensor(3, 3)
+    !> Its components.
+    real(wp) :: six(6)
+
+    six = [tensor(1, 1), tensor(2, 2), tensor(3, 3), tensor(1, 2), tensor(2, 3), tensor(3, 1)]
+  end function six_of
+
+  !> Symmetric tensor of components xx yy zz xy yz zx.
+  pure function full_of(six) result(tensor)
+    !> Its components.
+    real(wp), intent(in) :: six(6)
+    !> The tensor.
+    real(wp) :: tensor(3, 3)
+
+    tensor(:, 1) = [six(1), six(4), six(6)]
+    tensor(:, 2) = [six(4), six(2), six(5)]
+    tensor(:, 3) = [six(6), six(5), six(3)]
+  end function full_of
+
+  !> Product of two symmetric tensors that commute, which is symmetric.
+  pure function product_of(a, b) result(six)
+    !> First factor, components as of `six_of`.
+    real(wp), intent(in) :: a(6)
+    !> Second factor.
+    real(wp), intent(in) :: b(6)
+    !> The product.
+    real(wp) :: six(6)
+
+    six(1) = a(1)*b(1) + a(4)*b(4) + a(6)*b(6)
+    six(2) = a(4)*b(4) + a(2)*b(2) + a(5)*b(5)
+    six(3) = a(6)*b(6) + a(5)*b(5) + a(3)*b(3)
+    six(4) = a(1)*b(4) + a(4)*b(2) + a(6)*b(5)
+    six(5) = a(4)*b(6) + a(2)*b(5) + a(5)*b(3)
+    six(6) = a(6)*b(1) + a(5)*b(4) + a(3)*b(6)
+  end function product_of
 
   !> Elastic strains of a state: ev, es, A.
   pure subroutine strains(self, be, ev, es, a)
     !> Constants.
     class(breakage_t), intent(in) :: self
-    !> Elastic left Cauchy-Green tensor.
-    real(wp), intent(in) :: be(3, 3)
+    !> Elastic left Cauchy-Green tensor, components as of `six_of`.
+    real(wp), intent(in) :: be(6)
     !> Volume strain, below 0 in compression.
     real(wp), intent(out) :: ev
     !> Shear strain.
     real(wp), intent(out) :: es
     !> A.
     real(wp), intent(out) :: a
-    real(wp) :: e(3, 3)
+    real(wp) :: mean
 
-    e = 0.5_wp*(be - identity)
-    ev = e(1, 1) + e(2, 2) + e(3, 3)
-    e = e - (ev/3.0_wp)*identity
-    es = sqrt(2.0_wp*sum(e**2)/3.0_wp)
+    ! Less 1 before they are added: strains are small.
+    mean = ((be(1) - 1.0_wp) + (be(2) - 1.0_wp) + (be(3) - 1.0_wp))/3.0_wp
+    ev = 1.5_wp*mean
+    es = sqrt((sum(((be(1:3) - 1.0_wp) - mean)**2) + 2.0_wp*sum(be(4:6)**2))/6.0_wp)
     a = 0.0_wp
     if (ev < 0.0_wp) a = max(0.0_wp, -0.5_wp*self%bulk*(ev + smooth*log(1.0_wp - ev/smooth)))
   end subroutine strains
@@ -104,11 +166,27 @@ contains
     real(wp) :: phi
     real(wp) :: ev, es, a
 
-    call strains(self, be, ev, es, a)
+    call strains(self, six_of(be), ev, es, a)
+    phi = energy_of(self, ev, es, a)
+  end function breakage_stored
+
+  !> Elastic energy of strains over (1 - theta B) p_r, per volume of solid.
+  pure function energy_of(self, ev, es, a) result(phi)
+    !> Constants.
+    class(breakage_t), intent(in) :: self
+    !> Volume strain.
+    real(wp), intent(in) :: ev
+    !> Shear strain.
+    real(wp), intent(in) :: es
+    !> A.
+    real(wp), intent(in) :: a
+    !> Phi.
+    real(wp) :: phi
+
     phi = 2.0_wp*a**3/(3.0_wp*self%bulk) + 1.5_wp*self%shear*a*es**2 &
           + 0.25_wp*self%shear*sqrt(3.0_wp*self%bulk*self%shear)*es**3
     if (ev >= 0.0_wp) phi = 0.0_wp
-  end function breakage_stored
+  end function energy_of
 
   !> Stress of a state; 0 in tension.
   pure subroutine breakage_respond(self, state, rr, t, p, q)
@@ -124,24 +202,50 @@ contains
     real(wp), intent(out) :: p
     !> sqrt(3 s:s/2). [Pa]
     real(wp), intent(out) :: q
-    real(wp) :: ev, es, a, c, spherical
+    real(wp) :: six(6), phi
+
+    call stress_of(self, six_of(state%be), state%breakage, rr, six, p, q, phi)
+    t = full_of(six)
+  end subroutine breakage_respond
+
+  !> Stress and energy of a state; 0 in tension.
+  pure subroutine stress_of(self, be, breakage, rr, t, p, q, phi)
+    !> Constants.
+    class(breakage_t), intent(in) :: self
+    !> Elastic left Cauchy-Green tensor, components as of `six_of`.
+    real(wp), intent(in) :: be(6)
+    !> Breakage B.
+    real(wp), intent(in) :: breakage
+    !> Density over that of the solid.
+    real(wp), intent(in) :: rr
+    !> Stress, components as of `six_of`. [Pa]
+    real(wp), intent(out) :: t(6)
+    !> -tr T/3. [Pa]
+    real(wp), intent(out) :: p
+    !> sqrt(3 s:s/2). [Pa]
+    real(wp), intent(out) :: q
+    !> Elastic energy over (1 - theta B) p_r.
+    real(wp), intent(out) :: phi
+    real(wp) :: ev, es, a, c, spherical, factor(6)
 
     t = 0.0_wp
     p = 0.0_wp
     q = 0.0_wp
-    call strains(self, state%be, ev, es, a)
+    phi = 0.0_wp
+    call strains(self, be, ev, es, a)
     if (ev >= 0.0_wp) return
-    c = rr*(1.0_wp - self%grading*state%breakage)*self%pressure
+    phi = energy_of(self, ev, es, a)
+    c = rr*(1.0_wp - self%grading*breakage)*self%pressure
     spherical = c*(2.0_wp*a**2/self%bulk + 1.5_wp*self%shear*es**2) &
                 *(-self%bulk*ev)/(2.0_wp*(smooth - ev))
     ! 2 q/(3 es) without the division.
     c = 2.0_wp*c*self%shear*(a + 0.25_wp*sqrt(3.0_wp*self%bulk*self%shear)*es)
-    t = c*(0.5_wp*(state%be - identity) - (ev/3.0_wp)*identity) - spherical*identity
-    t = matmul(t, state%be)
-    t = 0.5_wp*(t + transpose(t))
-    p = -(t(1, 1) + t(2, 2) + t(3, 3))/3.0_wp
-    q = sqrt(1.5_wp*sum((t + p*identity)**2))
-  end subroutine breakage_respond
+    factor(1:3) = c*(0.5_wp*(be(1:3) - 1.0_wp) - ev/3.0_wp) - spherical
+    factor(4:6) = 0.5_wp*c*be(4:6)
+    t = product_of(factor, be)
+    p = -(t(1) + t(2) + t(3))/3.0_wp
+    q = sqrt(1.5_wp*(sum((t(1:3) + p)**2) + 2.0_wp*sum(t(4:6)**2)))
+  end subroutine stress_of
 
   !> Porosities between which the grains touch.
   pure function breakage_porosities(self, breakage) result(limits)
@@ -152,7 +256,7 @@ contains
     !> Lowest and highest.
     real(wp) :: limits(2)
 
-    limits = self%limits*(1.0_wp - min(breakage, broken))**self%powers
+    limits = self%limits*exp(self%powers*log(1.0_wp - min(breakage, broken)))
   end function breakage_porosities
 
   !> Yield, and the volume, shear and breakage rates of flow per unit of its multiplier.
@@ -171,36 +275,72 @@ contains
     real(wp), intent(out) :: t(3, 3)
     !> Its q. [Pa]
     real(wp), intent(out) :: q
-    real(wp), parameter :: quarter_turn = acos(0.0_wp)
-    real(wp) :: p, free, limits(2), r, angle, dilatancy, strength, crush, left
+    type(level_t) :: level
+    real(wp) :: six(6)
 
-    call self%respond(state, rr, t, p, q)
-    y = -1.0_wp
+    call find_level(self, state, rr, level, six)
+    call find_rates(self, level, rates)
+    t = full_of(six)
+    y = level%y
+    q = level%q
+  end subroutine breakage_yield
+
+  !> Yield and what it is made of.
+  pure subroutine find_level(self, state, rr, level, t)
+    !> Constants.
+    class(breakage_t), intent(in) :: self
+    !> The state.
+    type(breakage_state_t), intent(in) :: state
+    !> Density over that of the solid.
+    real(wp), intent(in) :: rr
+    !> The yield.
+    type(level_t), intent(out) :: level
+    !> Stress, components as of `six_of`. [Pa]
+    real(wp), intent(out) :: t(6)
+    real(wp), parameter :: offset = 2.0_wp*quarter_turn/15.0_wp
+    real(wp) :: phi, limits(2), sine
+
+    call stress_of(self, six_of(state%be), state%breakage, rr, t, level%p, level%q, phi)
+    if (.not. (level%q > 0.0_wp .or. abs(level%p) > 0.0_wp)) return
+    level%y = 1.0_wp
+    if (level%p <= 0.0_wp) return
+    level%left = 1.0_wp - min(state%breakage, broken)
+    level%free = rr*self%grading*self%pressure*phi/self%energy*level%left**2
+    limits = self%porosities(state%breakage)
+    level%r = (limits(2) - state%porosity)/max(limits(2) - limits(1), tiny(1.0_wp)/epsilon(1.0_wp))
+    ! Sine of the offset and the angle of friction together.
+    sine = 3.0_wp*self%friction/(6.0_wp + self%friction)
+    sine = cos(offset)*sine + sin(offset)*sqrt(1.0_wp - sine**2)
+    level%dilatancy = self%dilation*level%r - sqrt(level%free)
+    level%dilatancy = level%dilatancy*(6.0_wp*sine/(3.0_wp - sine) - self%friction)
+    level%bound = max(self%friction + level%dilatancy, 1.0e-3_wp*self%friction)*level%p
+    level%y = level%free + (level%q/level%bound)**2 - 1.0_wp
+  end subroutine find_level
+
+  !> Rates of flow per unit of its multiplier. Only their ratios count; these are of strains.
+  pure subroutine find_rates(self, level, rates)
+    !> Constants.
+    class(breakage_t), intent(in) :: self
+    !> The yield.
+    type(level_t), intent(in) :: level
+    !> Rates of plastic volume, plastic shear, B. [-, -, -]
+    real(wp), intent(out) :: rates(3)
+    real(wp) :: share, crush, sheared
+
     rates = 0.0_wp
-    if (.not. (q > 0.0_wp .or. abs(p) > 0.0_wp)) return
-    if (p <= 0.0_wp) then
+    if (level%y <= -1.0_wp) return
+    if (level%p <= 0.0_wp) then
       ! Shear alone tears the grains apart: it flows until they are pressed together.
-      y = 1.0_wp
       rates = [1.0_wp, 1.0_wp, 0.0_wp]
       return
     end if
-    left = 1.0_wp - min(state%breakage, broken)
-    free = rr*self%grading*self%pressure*self%stored(state%be)/self%energy*left**2
-    limits = self%porosities(state%breakage)
-    r = (limits(2) - state%porosity)/max(limits(2) - limits(1), tiny(1.0_wp)/epsilon(1.0_wp))
-    angle = 2.0_wp*quarter_turn/15.0_wp + asin(3.0_wp*self%friction/(6.0_wp + self%friction))
-    dilatancy = self%dilation*r - sqrt(free)
-    dilatancy = dilatancy*(6.0_wp*sin(angle)/(3.0_wp - sin(angle)) - self%friction)
-    strength = max(self%friction + dilatancy, 1.0e-3_wp*self%friction)
-    r = max(0.0_wp, min(1.0_wp, r))
-    crush = free*sin(quarter_turn*(1.0_wp - r))**2
-    y = free + (q/(strength*p))**2 - 1.0_wp
-    rates(1) = -crush*(p/(p**2 + q**2)) + (q/(strength*p))*(dilatancy/(strength*p))
-    rates(2) = crush*(q/(p**2 + q**2)) + (q/(strength*p))/(strength*p)
-    rates(3) = left**2*cos(quarter_turn*(1.0_wp - r))**2/self%energy
-    ! Only the ratios count; these are of strains.
-    rates = rates*p
-  end subroutine breakage_yield
+    share = sin(quarter_turn*(1.0_wp - max(0.0_wp, min(1.0_wp, level%r))))**2
+    crush = level%free*share*level%p/(level%p**2 + level%q**2)
+    sheared = level%q/level%bound*(level%p/level%bound)
+    rates(1) = -crush*level%p + sheared*level%dilatancy
+    rates(2) = crush*level%q + sheared
+    rates(3) = level%left**2*(1.0_wp - share)/self%energy*level%p
+  end subroutine find_rates
 
   !> Bring a trial state back to the yield surface along directions of flow.
   pure subroutine breakage_flow(self, rr, state, t, good)
@@ -215,40 +355,120 @@ contains
     !> Whether a state was found.
     logical, intent(out) :: good
     type(breakage_state_t) :: next
-    type(bracket_t) :: search
-    real(wp) :: rates(3), direction(3, 3), y, y_next, far, q, unused(3), along, start
+    type(level_t) :: level
+    real(wp) :: rates(3), direction(6), far, start, six(6)
+    logical :: found
     integer :: i
 
     good = .true.
     start = norm2(state%be - identity)
     do i = 1, patience
-      call self%yield(state, rr, y, rates, t, q)
-      if (y <= tolerance) return
+      call find_level(self, state, rr, level, six)
+      t = full_of(six)
+      if (level%y <= tolerance) return
       if (norm2(state%be - identity) < vanished*start) then
         ! Contraction has taken all of the pressure, and with it the strength.
         state%be = identity
         t = 0.0_wp
         return
       end if
-      call direct(state, rates, t, q, direction, far)
-      next = moved(state, rates, direction, far)
-      call self%yield(next, rr, y_next, unused, t, along)
-      if (y_next <= tolerance) then
-        call search%start(0.0_wp, y, far, min(y_next, -tolerance))
-        do while (.not. search%done .and. search%n < 200)
-          next = moved(state, rates, direction, search%x)
-          call self%yield(next, rr, y_next, unused, t, along)
-          if (abs(y_next) <= tolerance) exit
-          call search%take(y_next)
-        end do
-        state = next
-        if (y_next <= tolerance) return
-      else
-        state = next
+      call find_rates(self, level, rates)
+      call direct(state, rates, six, level%q, direction, far)
+      call follow_secants(self, rr, state, level%y, rates, direction, far, next, six, found)
+      if (.not. found) then
+        call follow_bracket(self, rr, state, level%y, rates, direction, far, next, six, found)
       end if
+      state = next
+      t = full_of(six)
+      if (found) return
     end do
     good = .false.
   end subroutine breakage_flow
+
+  !> Look for the yield surface by secants: few values, where it is near.
+  pure subroutine follow_secants(self, rr, state, y, rates, direction, far, next, t, found)
+    !> Constants.
+    class(breakage_t), intent(in) :: self
+    !> Density over that of the solid.
+    real(wp), intent(in) :: rr
+    !> The state.
+    type(breakage_state_t), intent(in) :: state
+    !> Its yield, above 0.
+    real(wp), intent(in) :: y
+    !> Rates of plastic volume, plastic shear, B.
+    real(wp), intent(in) :: rates(3)
+    !> -dBe per unit of the multiplier.
+    real(wp), intent(in) :: direction(6)
+    !> Largest multiplier.
+    real(wp), intent(in) :: far
+    !> The state on the surface, if it is found.
+    type(breakage_state_t), intent(out) :: next
+    !> Its stress, components as of `six_of`. [Pa]
+    real(wp), intent(out) :: t(6)
+    !> Whether it is found.
+    logical, intent(out) :: found
+    !> Values until the bracket is the better rule; first way over the largest one.
+    integer, parameter :: most = 8
+    real(wp), parameter :: first_way = 1.0e-3_wp
+    type(level_t) :: level
+    real(wp) :: x(0:1), values(0:1), slope
+    integer :: i
+
+    found = .false.
+    x = [0.0_wp, first_way*far]
+    values = y
+    do i = 1, most
+      next = moved(state, rates, direction, x(1))
+      call find_level(self, next, rr, level, t)
+      values(1) = level%y
+      found = abs(values(1)) <= tolerance
+      if (found .or. .not. abs(x(1) - x(0)) > 0.0_wp) return
+      slope = (values(1) - values(0))/(x(1) - x(0))
+      if (.not. slope < 0.0_wp) return
+      x = [x(1), x(1) - values(1)/slope]
+      values(0) = values(1)
+      if (.not. (x(1) > 0.0_wp .and. x(1) < far)) return
+    end do
+  end subroutine follow_secants
+
+  !> Go along a direction of flow to the yield surface, or as far as it may be followed.
+  pure subroutine follow_bracket(self, rr, state, y, rates, direction, far, next, t, found)
+    !> Constants.
+    class(breakage_t), intent(in) :: self
+    !> Density over that of the solid.
+    real(wp), intent(in) :: rr
+    !> The state.
+    type(breakage_state_t), intent(in) :: state
+    !> Its yield, above 0.
+    real(wp), intent(in) :: y
+    !> Rates of plastic volume, plastic shear, B.
+    real(wp), intent(in) :: rates(3)
+    !> -dBe per unit of the multiplier.
+    real(wp), intent(in) :: direction(6)
+    !> Largest multiplier.
+    real(wp), intent(in) :: far
+    !> The state there.
+    type(breakage_state_t), intent(out) :: next
+    !> Its stress, components as of `six_of`. [Pa]
+    real(wp), intent(out) :: t(6)
+    !> Whether it does not yield.
+    logical, intent(out) :: found
+    type(level_t) :: level
+    type(bracket_t) :: search
+
+    next = moved(state, rates, direction, far)
+    call find_level(self, next, rr, level, t)
+    found = level%y <= tolerance
+    if (.not. found) return
+    call search%start(0.0_wp, y, far, min(level%y, -tolerance))
+    do while (.not. search%done .and. search%n < 200)
+      next = moved(state, rates, direction, search%x)
+      call find_level(self, next, rr, level, t)
+      if (abs(level%y) <= tolerance) exit
+      call search%take(level%y)
+    end do
+    found = level%y <= tolerance
+  end subroutine follow_bracket
 
   !> Direction of flow of the elastic strain, and how far it may be followed.
   pure subroutine direct(state, rates, t, q, direction, far)
@@ -256,35 +476,50 @@ contains
     type(breakage_state_t), intent(in) :: state
     !> Rates of plastic volume, plastic shear, B.
     real(wp), intent(in) :: rates(3)
-    !> Stress. [Pa]
-    real(wp), intent(in) :: t(3, 3)
+    !> Stress, components as of `six_of`. [Pa]
+    real(wp), intent(in) :: t(6)
     !> Its q. [Pa]
     real(wp), intent(in) :: q
-    !> -dBe per unit of the multiplier.
-    real(wp), intent(out) :: direction(3, 3)
+    !> -dBe per unit of the multiplier, components as of `six_of`.
+    real(wp), intent(out) :: direction(6)
     !> Largest multiplier.
     real(wp), intent(out) :: far
     real(wp), parameter :: share = 0.5_wp
-    real(wp) :: s(3, 3), volume, shear
+    real(wp) :: s(6), be(6), strain(6), volume, shear
 
-    direction = (2.0_wp/3.0_wp)*rates(1)*state%be
+    be = six_of(state%be)
+    strain = be
+    strain(1:3) = strain(1:3) - 1.0_wp
+    direction = (2.0_wp/3.0_wp)*rates(1)*be
     if (q > 0.0_wp) then
-      s = t - (t(1, 1) + t(2, 2) + t(3, 3))/3.0_wp*identity
-      s = (1.5_wp*rates(2)/q)*s
-      direction = direction + matmul(s, state%be) + matmul(state%be, s)
+      s = t
+      s(1:3) = s(1:3) - (t(1) + t(2) + t(3))/3.0_wp
+      direction = direction + product_of((3.0_wp*rates(2)/q)*s, be)
     end if
     far = huge(1.0_wp)
-    volume = sum(direction*identity)
-    if (volume < 0.0_wp) far = share*(3.0_wp - sum(state%be*identity))/(-volume)
-    far = min(far, share*norm2(state%be - identity)/norm2(direction))
-    s = state%be - sum(state%be*identity)/3.0_wp*identity
-    shear = sum(s*direction)
-    if (shear > 0.0_wp) far = min(far, share*sum(s**2)/shear)
+    volume = sum(direction(1:3))
+    if (volume < 0.0_wp) far = share*sum(strain(1:3))/volume
+    far = min(far, share*sqrt(contraction(strain, strain)/contraction(direction, direction)))
+    strain(1:3) = strain(1:3) - sum(strain(1:3))/3.0_wp
+    shear = contraction(strain, direction)
+    if (shear > 0.0_wp) far = min(far, share*contraction(strain, strain)/shear)
     if (rates(3) > 0.0_wp) then
       far = min(far, min(largest_change, 1.0_wp - min(state%breakage, broken))/rates(3))
     end if
     if (abs(rates(1)) > 0.0_wp) far = min(far, largest_change/abs(rates(1)))
   end subroutine direct
+
+  !> Sum over all components of the product of two symmetric tensors.
+  pure function contraction(a, b) result(total)
+    !> First tensor, components as of `six_of`.
+    real(wp), intent(in) :: a(6)
+    !> Second tensor.
+    real(wp), intent(in) :: b(6)
+    !> The sum.
+    real(wp) :: total
+
+    total = sum(a(1:3)*b(1:3)) + 2.0_wp*sum(a(4:6)*b(4:6))
+  end function contraction
 
   !> A state some way along a direction of flow.
   pure function moved(state, rates, direction, way) result(next)
@@ -293,13 +528,13 @@ contains
     !> Rates of plastic volume, plastic shear, B.
     real(wp), intent(in) :: rates(3)
     !> -dBe per unit of the multiplier.
-    real(wp), intent(in) :: direction(3, 3)
+    real(wp), intent(in) :: direction(6)
     !> The multiplier.
     real(wp), intent(in) :: way
     !> The state there.
     type(breakage_state_t) :: next
 
-    next%be = state%be - way*direction
+    next%be = state%be - way*full_of(direction)
     next%breakage = min(state%breakage + way*rates(3), broken)
     next%porosity = 1.0_wp - (1.0_wp - state%porosity)*exp(-way*rates(1))
   end function moved
@@ -316,7 +551,7 @@ contains
     real(wp) :: modulus
     real(wp) :: ev, es, a, x, g, crushing, now
 
-    call strains(self, state%be, ev, es, a)
+    call strains(self, six_of(state%be), ev, es, a)
     x = max(0.0_wp, -ev)
     g = sqrt(3.0_wp*self%bulk*self%shear)
     now = self%bulk*a + (a**2 + 0.75_wp*self%bulk*self%shear*es**2)*smooth/(smooth + x)**2 &
