@@ -182,9 +182,21 @@ contains
 
     law = self%law
     law%slope = self%slope(0) + (self%slope(1) - self%slope(0))*c
-    law%critical = self%jammed(0) + (self%jammed(1) - self%jammed(0))*c
+    law%critical = jam(self, c)
     law%gate = law%critical
   end function law_of
+
+  !> Packing fraction that jams with a fraction of contacts.
+  elemental function jam(self, c) result(critical)
+    !> The material.
+    class(cornstarch_t), intent(in) :: self
+    !> Fraction of contacts.
+    real(wp), intent(in) :: c
+    !> The packing fraction.
+    real(wp) :: critical
+
+    critical = self%jammed(0) + (self%jammed(1) - self%jammed(0))*c
+  end function jam
 
   !> Advance the stress of a block of points over one step.
   pure subroutine cornstarch_update_stress(self, n, dt, gradient, mass, volume, stress, history, &
@@ -207,10 +219,8 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a stress; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: trial(n), tau(n), factor(n), pressure(n), kept, phi, rate
-    type(granular_flow_t) :: law
-    integer :: p
-    logical :: good
+    real(wp) :: trial(n), tau(n), factor(n), pressure(n), kept(n), phi(n), rate(n), static
+    integer :: list(n), m, p
 
     call spin_stress(self%kin, n, dt, gradient, stress)
     call add_strain(self%kin, n, dt, self%law%bulk - 2.0_wp*self%law%shear/3.0_wp, self%law%shear, &
@@ -218,28 +228,73 @@ contains
     call invariants(self%kin%nstress, n, stress, trial, tau)
     first_bad = first_not_finite(1, n, trial + tau)
     if (first_bad > 0) return
+    phi = mass/(volume*self%law%grain_density)
+    kept = tau
+    pressure = trial
+    rate = 0.0_wp
+    m = 0
     do p = 1, n
-      phi = mass(p)/(volume(p)*self%law%grain_density)
-      law = law_of(self, history(3, p))
-      law%viscosity = history(self%at_viscosity, p)
-      kept = tau(p)
-      rate = 0.0_wp
-      pressure(p) = trial(p)
-      if (trial(p) < 0.0_wp .or. tau(p) > law%strength(phi, trial(p), 0.0_wp)) then
-        call law%solve(dt, phi, trial(p), tau(p), pressure(p), kept, rate, good)
-        if (.not. good) then
-          first_bad = p
-          return
-        end if
+      static = self%law%friction + self%law%dilation*(phi(p) - jam(self, history(3, p)))
+      if (trial(p) < 0.0_wp .or. tau(p) > max(0.0_wp, static*trial(p))) then
+        m = m + 1
+        list(m) = p
       end if
-      factor(p) = 1.0_wp
-      if (tau(p) > 0.0_wp) factor(p) = kept/tau(p)
-      history(1, p) = history(1, p) + dt*rate
-      history(2, p) = rate
-      call advance_contacts(self, dt, phi, kept, rate, history(3, p))
+    end do
+    if (m > 0) then
+      call flow(self, n, m, list(:m), dt, phi, trial, tau, history, pressure, kept, rate, first_bad)
+      if (first_bad > 0) return
+    end if
+    factor = 1.0_wp
+    where (tau > 0.0_wp) factor = kept/tau
+    history(1, :) = history(1, :) + dt*rate
+    history(2, :) = rate
+    do p = 1, n
+      call advance_contacts(self, dt, phi(p), kept(p), rate(p), history(3, p))
     end do
     call rebuild(self%kin%nstress, n, trial, factor, pressure, stress)
   end subroutine cornstarch_update_stress
+
+  !> Bring the points of a list back to their strength.
+  pure subroutine flow(self, n, m, list, dt, phi, trial, tau, history, pressure, kept, rate, &
+                       first_bad)
+    !> The material.
+    class(cornstarch_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Number of those that flow.
+    integer, intent(in) :: m
+    !> Those that flow.
+    integer, intent(in) :: list(m)
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Packing fractions. (n)
+    real(wp), intent(in) :: phi(n)
+    !> Trial pressures. [Pa] (n)
+    real(wp), intent(in) :: trial(n)
+    !> Trial shear stresses. [Pa] (n)
+    real(wp), intent(in) :: tau(n)
+    !> Plastic shear strain, its rate, c, and viscosity, of the last step. (4, n)
+    real(wp), intent(in) :: history(self%n_history, n)
+    !> Pressures. [Pa] (n)
+    real(wp), intent(inout) :: pressure(n)
+    !> Shear stresses. [Pa] (n)
+    real(wp), intent(inout) :: kept(n)
+    !> Plastic shear rates. [1/s] (n)
+    real(wp), intent(inout) :: rate(n)
+    !> First point without a stress; 0 when there is none.
+    integer, intent(out) :: first_bad
+    real(wp) :: slope(m), critical(m), p(m), t(m), g(m)
+
+    slope = self%slope(0) + (self%slope(1) - self%slope(0))*history(3, list)
+    critical = jam(self, history(3, list))
+    g = history(2, list)
+    call self%law%solve_block(m, dt, history(self%at_viscosity, list), slope, critical, critical, &
+                              phi(list), trial(list), tau(list), p, t, g, first_bad)
+    if (first_bad > 0) first_bad = list(first_bad)
+    pressure(list) = p
+    kept(list) = t
+    rate(list) = g
+  end subroutine flow
 
   !> Advance the fraction of contacts by backward Euler.
   pure subroutine advance_contacts(self, dt, phi, tau, rate, c)
@@ -333,7 +388,7 @@ contains
     call write_flow_fields(self%law, n, mass, volume, stress, history, &
                            history(self%at_viscosity, :), writer)
     call writer%scalar('c', (history(3, :)))
-    call writer%scalar('phi_m', self%jammed(0) + (self%jammed(1) - self%jammed(0))*history(3, :))
+    call writer%scalar('phi_m', jam(self, history(3, :)))
   end subroutine cornstarch_write_fields
 
 end module mpm_cornstarch

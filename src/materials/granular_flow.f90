@@ -122,8 +122,8 @@ contains
   !! The search of `solve`, in step for all points that flow, from the shear rates of the last step.
   !! Points in which a loose packing has to be searched for as well, and the few that are not found
   !! in step, are left to `solve`.
-  pure subroutine granular_flow_solve_block(self, n, dt, viscosity, phi, p_trial, tau_trial, p, &
-                                            tau, rate, first_bad)
+  pure subroutine granular_flow_solve_block(self, n, dt, viscosity, slope, critical, gate, phi, &
+                                            p_trial, tau_trial, p, tau, rate, first_bad)
     !> The law.
     class(granular_flow_t), intent(in) :: self
     !> Number of points.
@@ -132,6 +132,12 @@ contains
     real(wp), intent(in) :: dt
     !> Viscosities, in place of that of the law. [Pa s] (n)
     real(wp), intent(in) :: viscosity(n)
+    !> Slopes of the packing law, in place of that of the law. (n)
+    real(wp), intent(in) :: slope(n)
+    !> Critical packing fractions, in place of that of the law. (n)
+    real(wp), intent(in) :: critical(n)
+    !> Packing fractions from which grains carry pressure at rest, too. (n)
+    real(wp), intent(in) :: gate(n)
     !> Packing fractions. (n)
     real(wp), intent(in) :: phi(n)
     !> Trial pressures. [Pa] (n)
@@ -151,20 +157,19 @@ contains
     integer :: list(n), m, i, k
     logical :: found(n), good
 
-    law = self
     m = 0
     first_bad = 0
     do i = 1, n
-      if (phi(i) < self%gate .and. self%compaction > 0.0_wp) then
-        law%viscosity = viscosity(i)
+      if (phi(i) < gate(i) .and. self%compaction > 0.0_wp) then
+        law = law_of(i)
         call law%solve(dt, phi(i), p_trial(i), tau_trial(i), p(i), tau(i), rate(i), good)
         if (.not. good .and. first_bad == 0) first_bad = i
         cycle
       end if
       p(i) = max(0.0_wp, p_trial(i))
-      if (phi(i) < self%gate) p(i) = 0.0_wp
+      if (phi(i) < gate(i)) p(i) = 0.0_wp
       tau(i) = tau_trial(i)
-      if (tau(i) > max(0.0_wp, self%friction + self%dilation*(phi(i) - self%critical))*p(i)) then
+      if (tau(i) > max(0.0_wp, self%friction + self%dilation*(phi(i) - critical(i)))*p(i)) then
         m = m + 1
         list(m) = i
       else
@@ -173,9 +178,9 @@ contains
     end do
     if (m == 0) return
     guess(:m) = rate(list(:m))
-    call search_in_step(self, m, dt, viscosity(list(:m)), phi(list(:m)), &
-                        p_trial(list(:m)), tau_trial(list(:m)), guess(:m), p_found(:m), &
-                        tau_found(:m), found(:m))
+    call search_in_step(self, m, dt, viscosity(list(:m)), slope(list(:m)), critical(list(:m)), &
+                        gate(list(:m)), phi(list(:m)), p_trial(list(:m)), tau_trial(list(:m)), &
+                        guess(:m), p_found(:m), tau_found(:m), found(:m))
     do k = 1, m
       i = list(k)
       if (found(k)) then
@@ -183,16 +188,34 @@ contains
         tau(i) = tau_found(k)
         rate(i) = guess(k)
       else
-        law%viscosity = viscosity(i)
+        law = law_of(i)
         call law%solve(dt, phi(i), p_trial(i), tau_trial(i), p(i), tau(i), rate(i), good)
         if (.not. good .and. first_bad == 0) first_bad = i
       end if
     end do
+
+  contains
+
+    !> The law of a point.
+    pure function law_of(point) result(law)
+      !> The point.
+      integer, intent(in) :: point
+      !> Its law.
+      type(granular_flow_t) :: law
+
+      law = self
+      law%viscosity = viscosity(point)
+      law%slope = slope(point)
+      law%critical = critical(point)
+      law%gate = gate(point)
+    end function law_of
+
   end subroutine granular_flow_solve_block
 
   !> Search the shear rates of points in step: false position with the weights of Anderson and
   !! Bjorck.
-  pure subroutine search_in_step(law, m, dt, eta, phi, p_trial, tau_trial, x, p, tau, found)
+  pure subroutine search_in_step(law, m, dt, eta, incline, critical, gate, phi, p_trial, &
+                                 tau_trial, x, p, tau, found)
     !> The law.
     class(granular_flow_t), intent(in) :: law
     !> Number of points.
@@ -201,6 +224,12 @@ contains
     real(wp), intent(in) :: dt
     !> Viscosities. [Pa s] (m)
     real(wp), intent(in) :: eta(m)
+    !> Slopes a of the packing law. (m)
+    real(wp), intent(in) :: incline(m)
+    !> Critical packing fractions. (m)
+    real(wp), intent(in) :: critical(m)
+    !> Packing fractions from which grains carry pressure at rest. (m)
+    real(wp), intent(in) :: gate(m)
     !> Packing fractions. (m)
     real(wp), intent(in) :: phi(m)
     !> Trial pressures. [Pa] (m)
@@ -222,8 +251,10 @@ contains
     steep = 1.0_wp/(law%shear*dt)
     a = 0.0_wp
     b = tau_trial*steep
-    call missing_strength(law, m, dt, eta, phi, p_trial, tau_trial, a, p, tau, fa)
-    call missing_strength(law, m, dt, eta, phi, p_trial, tau_trial, b, p, tau, fb)
+    call missing_strength(law, m, dt, eta, incline, critical, gate, phi, p_trial, tau_trial, &
+                          a, p, tau, fa)
+    call missing_strength(law, m, dt, eta, incline, critical, gate, phi, p_trial, tau_trial, &
+                          b, p, tau, fb)
     moved = 0.0_wp
     do i = 1, m
       ! Without strength at the other end there is none left, as in `solve`.
@@ -234,7 +265,8 @@ contains
       end if
     end do
     ! Those with a guess take the steepest elastic step from it, which ends beyond the solution.
-    call missing_strength(law, m, dt, eta, phi, p_trial, tau_trial, x, p, tau, f)
+    call missing_strength(law, m, dt, eta, incline, critical, gate, phi, p_trial, tau_trial, &
+                          x, p, tau, f)
     do k = 1, lockstep
       do i = 1, m
         up = f(i) > 0.0_wp
@@ -254,7 +286,8 @@ contains
         next = merge(next, 0.5_wp*(a(i) + b(i)), next > a(i) .and. next < b(i))
         x(i) = merge(x(i), next, abs(f(i)) <= tolerance*max(abs(p_trial(i)), tau_trial(i)))
       end do
-      call missing_strength(law, m, dt, eta, phi, p_trial, tau_trial, x, p, tau, f)
+      call missing_strength(law, m, dt, eta, incline, critical, gate, phi, p_trial, tau_trial, &
+                          x, p, tau, f)
       found = abs(f) <= tolerance*max(abs(p_trial), tau_trial)
       if (all(found)) exit
     end do
@@ -263,8 +296,8 @@ contains
   end subroutine search_in_step
 
   !> Shear stresses less strengths of plastic shear rates, for many points at a time.
-  pure subroutine missing_strength(law, m, dt, eta, phi, p_trial, tau_trial, rate, p, tau, &
-                                   missing)
+  pure subroutine missing_strength(law, m, dt, eta, incline, critical, gate, phi, p_trial, &
+                                   tau_trial, rate, p, tau, missing)
     !> The law.
     class(granular_flow_t), intent(in) :: law
     !> Number of points.
@@ -273,6 +306,12 @@ contains
     real(wp), intent(in) :: dt
     !> Viscosities. [Pa s] (m)
     real(wp), intent(in) :: eta(m)
+    !> Slopes a of the packing law. (m)
+    real(wp), intent(in) :: incline(m)
+    !> Critical packing fractions. (m)
+    real(wp), intent(in) :: critical(m)
+    !> Packing fractions from which grains carry pressure at rest. (m)
+    real(wp), intent(in) :: gate(m)
     !> Packing fractions. (m)
     real(wp), intent(in) :: phi(m)
     !> Trial pressures. [Pa] (m)
@@ -300,9 +339,9 @@ contains
     do k = 1, 100
       worst = 0.0_wp
       do i = 1, m
-        ac = s(i) + law%slope*c(i)
-        value = (s(i)*s(i) - top(i))*ac + push(i)*law%critical*s(i)
-        slope = 2.0_wp*s(i)*ac + (s(i)*s(i) - top(i)) + push(i)*law%critical
+        ac = s(i) + incline(i)*c(i)
+        value = (s(i)*s(i) - top(i))*ac + push(i)*critical(i)*s(i)
+        slope = 2.0_wp*s(i)*ac + (s(i)*s(i) - top(i)) + push(i)*critical(i)
         next = s(i) - value/merge(slope, 1.0_wp, slope > 0.0_wp)
         next = merge(max(0.0_wp, min(s(i), next)), s(i), slope > 0.0_wp)
         worst = max(worst, s(i) - next - near*s(i))
@@ -311,16 +350,16 @@ contains
       if (worst <= 0.0_wp) exit
     end do
     do i = 1, m
-      bound = (law%slope*phi(i)/merge(law%critical - phi(i), 1.0_wp, phi(i) < law%gate))**2
+      bound = (incline(i)*phi(i)/merge(critical(i) - phi(i), 1.0_wp, phi(i) < gate(i)))**2
       p(i) = s(i)*s(i)
-      p(i) = merge(min(p(i), bound*c(i)*c(i)), p(i), phi(i) < law%gate)
+      p(i) = merge(min(p(i), bound*c(i)*c(i)), p(i), phi(i) < gate(i))
       s(i) = sqrt(p(i))
       ac = merge(c(i)*s(i), 1.0_wp, c(i) > 0.0_wp .and. s(i) > 0.0_wp)
-      value = s(i)/merge(s(i) + law%slope*c(i), 1.0_wp, s(i) > 0.0_wp)
-      value = law%friction + law%dilation*(phi(i) - law%critical*value)
+      value = s(i)/merge(s(i) + incline(i)*c(i), 1.0_wp, s(i) > 0.0_wp)
+      value = law%friction + law%dilation*(phi(i) - critical(i)*value)
       slope = (law%fast_friction - law%friction)*c(i)/merge(c(i) + law%inertial*s(i), 1.0_wp, &
                                                             c(i) > 0.0_wp)
-      next = 2.5_wp*phi(i)*rate(i)*eta(i)/(law%slope*ac)
+      next = 2.5_wp*phi(i)*rate(i)*eta(i)/(incline(i)*ac)
       value = value + merge(slope + next, 0.0_wp, c(i) > 0.0_wp)
       tau(i) = max(0.0_wp, tau_trial(i) - law%shear*dt*rate(i))
       missing(i) = tau(i) - max(0.0_wp, value*p(i))

@@ -258,7 +258,9 @@ contains
     phi = mass/(volume*self%law%grain_density)
     rate = history(2, :)
     viscosity = history(self%at_viscosity, :)
-    call self%law%solve_block(n, dt, viscosity, phi, trial, tau, pressure, kept, rate, first_bad)
+    call self%law%solve_block(n, dt, viscosity, spread(self%law%slope, 1, n), &
+                              spread(self%law%critical, 1, n), spread(self%law%gate, 1, n), phi, &
+                              trial, tau, pressure, kept, rate, first_bad)
     if (first_bad > 0) return
     factor = 1.0_wp
     where (tau > 0.0_wp) factor = kept/tau
