@@ -1,5 +1,6 @@
 !> A compressible fluid with the Tillotson equation of state, for shocks.
 module mpm_tillotson_eos_fluid
+  use mpm_advance, only: exponential
   use mpm_corotation, only: strain_rates
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
@@ -180,11 +181,12 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a pressure; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: rate(self%kin%nstress, n), trace(n), before, rho, growth, push, p, friction
+    real(wp) :: rate(self%kin%nstress, n), trace(n), shrunk(n), before, rho, growth, push, p, friction
     integer :: i
     logical :: good
 
     call strain_rates(self%kin, n, 1.0_wp, gradient, rate, trace)
+    call exponential(n, -dt*trace, shrunk)
     first_bad = 0
     good = .true.
     do i = 1, n
@@ -194,7 +196,7 @@ contains
       good = rho <= densest*self%state%density .and. rho >= thinnest*self%state%density .and. &
              abs(dt*trace(i)) < fastest .and. abs(before) < huge(1.0_wp)/densest
       if (.not. good) exit
-      growth = (1.0_wp - exp(-dt*trace(i)))/rho
+      growth = (1.0_wp - shrunk(i))/rho
       push = -self%artificial*min(trace(i), 0.0_wp)
       rate(1:3, i) = rate(1:3, i) - trace(i)/3.0_wp
       friction = sum(rate(1:3, i)**2) + 2.0_wp*sum(rate(4:, i)**2)
