@@ -59,6 +59,8 @@ def targets(rows: list[Row], reference: dict[str, float]) -> list[str]:
     lines = [
         f"bare kernel {kernel:.1f} ns, triad {reference['triad_gb_per_s']:.1f} GB/s: "
         f"{reference['bytes_per_point']:.0f} bytes take {roofline:.1f} ns",
+        f"parts of the kernel: P2G {reference['p2g_ns']:.1f}, nodes {reference['nodes_ns']:.1f}, "
+        f"G2P with motion and stress {reference['g2p_ns']:.1f} ns",
         f"{'scene':20}{'ns':>8}{'target':>8}{'scaled':>8}{'/kernel':>9}{'/roofline':>11}",
     ]
     for row in rows:
