@@ -44,8 +44,7 @@ contains
            '       mpm3d -c FILE --estimate    time a few steps, tell how long a run takes'//nl// &
            '       mpm3d --list [ROLE]         classes that a config can name'//nl// &
            '       mpm3d --describe CLASS      purpose and properties of a class'//nl// &
-           '       mpm3d --describe-run FILE   program, config and points behind a checkpoint or&
-           & VTKHDF file'//nl// &
+           '       mpm3d --describe-run FILE   program, config and points behind an output'//nl// &
            '       mpm3d --version | --help'//nl//nl// &
            'options: --threads N               number of threads'//nl// &
            '         --max-memory SIZE         most memory of points and nodes, such as 8G;'//nl// &

@@ -11,8 +11,12 @@ _mpm3d() {
       mapfile -t COMPREPLY < <(compgen -f -X '!*.cfg' -- "$current"; compgen -d -- "$current")
       compopt -o filenames
       ;;
-    -r | --restart | --describe-run)
+    -r | --restart)
       mapfile -t COMPREPLY < <(compgen -f -X '!*.h5' -- "$current"; compgen -d -- "$current")
+      compopt -o filenames
+      ;;
+    --describe-run)
+      mapfile -t COMPREPLY < <(compgen -f -- "$current")
       compopt -o filenames
       ;;
     --list)

@@ -3,7 +3,6 @@ program mpm3d
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit
   use mpm_build_info, only: build_type, compiler, revision, version
-  use mpm_checkpoint_file, only: read_run_text
   use mpm_colours, only: coloured
   use mpm_command_line, only: command_line_t, read_command_line, usage
   use mpm_console, only: finish_output, put_line
@@ -18,6 +17,7 @@ program mpm3d
   use mpm_registry, only: describe_classes, role_names
   use mpm_restart, only: restart
   use mpm_run_estimate, only: estimate_run
+  use mpm_run_file, only: describe_run
   use mpm_signals, only: ignore_file_limit, watch_signals
   use mpm_strings, only: append_text, excerpt, nearest_name, string_t
   implicit none
@@ -69,7 +69,7 @@ contains
     case ('describe')
       call describe_class(command%subject, error)
     case ('describe-run')
-      call read_run_text(command%subject, text, error)
+      call describe_run(command%subject, text, error)
       if (.not. allocated(error)) call put_line(text)
     case default
       call run_job(command, error)

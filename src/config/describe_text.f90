@@ -76,6 +76,7 @@ contains
     !> One line.
     character(:), allocatable :: text
     character(:), allocatable :: types
+    real(wp) :: largest
     integer :: t
 
     text = property%name
@@ -104,11 +105,12 @@ contains
       end select
     end if
     if (property%kind /= kind_string) then
-      if (property%lower > -real(huge(1), wp)) then
+      largest = merge(real(huge(1), wp), huge(1.0_wp), property%kind == kind_integer)
+      if (property%lower > -largest) then
         text = text//trim(merge(', above   ', ', at least', property%above))//' '// &
                to_text(property%lower)
       end if
-      if (property%upper < real(huge(1), wp)) then
+      if (property%upper < largest) then
         text = text//trim(merge(', below  ', ', at most', property%below))//' '// &
                to_text(property%upper)
       end if

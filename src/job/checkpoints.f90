@@ -149,7 +149,7 @@ contains
     allocate (file)
     call file%begin(path)
     call file%put('program', 'mpm3d '//version//' ('//revision//', '//compiler//')')
-    call file%put('run', run_text(model, self%text))
+    call file%put('run', run_text(model, self%text, self%overrides))
     call file%put('config', self%config)
     call file%put('text', self%text)
     call file%put('overrides', size(self%overrides))

@@ -7,6 +7,7 @@ module mpm_job
   use mpm_model, only: model_t
   use mpm_monitor, only: monitor_t
   use mpm_phase_clock, only: phase_setup
+  use mpm_run_text, only: run_text
   use mpm_serializer, only: serializer_t
   use mpm_solver, only: solver_t
   use omp_lib, only: omp_get_max_threads
@@ -78,8 +79,12 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: i
 
-    if (allocated(self%checkpoints%text)) self%serializer%config_text = self%checkpoints%text
+    if (allocated(self%checkpoints%text)) then
+      self%serializer%config_text = self%checkpoints%text
+      self%serializer%run = run_text(self%model, self%checkpoints%text, self%checkpoints%overrides)
+    end if
     call self%serializer%open(self%model, error)
+    if (.not. allocated(error)) call self%serializer%name_run(self%model, self%goes_on, error)
     if (allocated(error)) return
     call self%serializer%history%open(self%model, error)
     if (allocated(error)) return

@@ -12,8 +12,10 @@ module mpm_tillotson
   use mpm_kinds, only: wp
   implicit none
   private
-  public :: tillotson_t
+  public :: densest, thinnest, tillotson_t
 
+  !> Densities over rho_0 beyond which there is no pressure.
+  real(wp), parameter :: densest = 100.0_wp, thinnest = 1.0e-12_wp
   !> Smallest w = E/(E_0 eta**2) + 1; P2 has a pole at 0.
   real(wp), parameter :: pole = 1.0e-6_wp
   !> Intervals of the table of the cold curve, and its first density over rho_0.
@@ -67,7 +69,8 @@ contains
     real(wp), intent(in) :: e
     !> Pressure. [Pa]
     real(wp), intent(out) :: p
-    !> Whether there is one: E is above -E_0 eta**2, where P2 has a pole.
+    !> Whether there is one: the density is within its bounds, and E above -E_0 eta**2, where P2 has
+    !! a pole.
     logical, intent(out) :: good
     !> dP/drho and dP/dE. [Pa m3/kg, kg/m3]
     real(wp), intent(out), optional :: slopes(2)
@@ -75,6 +78,8 @@ contains
 
     p = 0.0_wp
     if (present(slopes)) slopes = 0.0_wp
+    good = rho >= thinnest*self%density .and. rho <= densest*self%density
+    if (.not. good) return
     eta = rho/self%density
     w = e/(self%energy*eta**2) + 1.0_wp
     good = w > pole
@@ -178,7 +183,8 @@ contains
     end do
   end subroutine tillotson_tabulate
 
-  !> Energy of the cold curve: cubic between nodes, constant below the table, by steps above.
+  !> Energy of the cold curve: cubic between nodes, constant below the table, by steps above up to
+  !! the largest density.
   pure function tillotson_cold(self, rho) result(e)
     !> Constants and table.
     class(tillotson_t), intent(in) :: self
@@ -190,7 +196,7 @@ contains
     real(wp) :: s, h
     integer :: i
 
-    s = (rho/self%density - first)/spacing
+    s = (min(rho, densest*self%density)/self%density - first)/spacing
     if (s <= 0.0_wp) then
       e = self%table(1, 0)
     else if (s < real(intervals, wp)) then
@@ -209,7 +215,8 @@ contains
     end if
   end function tillotson_cold
 
-  !> Square of the speed of sound, dP/drho + P/rho**2 dP/dE; 0 where that is negative.
+  !> Square of the speed of sound, dP/drho + P/rho**2 dP/dE; 0 where that is negative, or where
+  !! there is no pressure.
   pure function tillotson_square_of_speed(self, rho, e) result(square)
     !> Constants.
     class(tillotson_t), intent(in) :: self
@@ -222,8 +229,9 @@ contains
     real(wp) :: p, slopes(2)
     logical :: good
 
+    square = 0.0_wp
     call self%pressure(rho, e, p, good, slopes)
-    square = max(0.0_wp, slopes(1) + p/rho**2*slopes(2))
+    if (good) square = max(0.0_wp, slopes(1) + p/rho**2*slopes(2))
   end function tillotson_square_of_speed
 
   !> Density of the cold curve that has a pressure.

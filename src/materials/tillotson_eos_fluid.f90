@@ -10,14 +10,15 @@ module mpm_tillotson_eos_fluid
   use mpm_material, only: material_t
   use mpm_properties, only: properties_t
   use mpm_strings, only: excerpt, string_t
-  use mpm_tillotson, only: tillotson_t
+  use mpm_tillotson, only: densest, thinnest, tillotson_t
   implicit none
   private
   public :: tillotson_eos_fluid_t
 
-  !> Densities over rho_0 at which a point is out of all bounds.
-  real(wp), parameter :: densest = 100.0_wp, thinnest = 1.0e-12_wp
-  !> Energy at which it is. [J/kg]
+  !> Bounds of the constants, far from those of any material in any units: with them no pressure,
+  !! energy or slope of a density within its bounds is beyond what a number can hold.
+  real(wp), parameter :: least = 1.0e-20_wp, most = 1.0e20_wp
+  !> Energy at which a point is out of all bounds. [J/kg]
   real(wp), parameter :: hottest = 1.0e20_wp
   !> Largest logarithm of a ratio of volumes in a step.
   real(wp), parameter :: fastest = 60.0_wp
@@ -70,23 +71,24 @@ contains
                           nl//'                      E_IV = 4.19e5, E_CV = 2.69e6, c_v = 3690, &
                           &T_0 = 293,'//nl// &
                           '                      eta_0 = 8.9e-4, P_cav = -1e5}')
-    call description%add_real('rho_0', 'kg/m3', 'reference density', above=0.0_wp)
+    call description%add_real('rho_0', 'kg/m3', 'reference density', lower=least, upper=most)
     call description%add_real('rho_IV', 'kg/m3', 'density of incipient vaporisation', lower=0.0_wp)
-    call description%add_real('a', '-', 'constant a', lower=0.0_wp)
-    call description%add_real('b', '-', 'constant b', lower=0.0_wp)
-    call description%add_real('A', 'Pa', 'bulk modulus at rho_0', above=0.0_wp)
-    call description%add_real('B', 'Pa', 'constant B', lower=0.0_wp)
-    call description%add_real('E_0', 'J/kg', 'constant E_0', above=0.0_wp)
-    call description%add_real('alpha', '-', 'constant alpha', lower=0.0_wp)
-    call description%add_real('beta', '-', 'constant beta', lower=0.0_wp)
+    call description%add_real('a', '-', 'constant a', lower=0.0_wp, upper=10.0_wp)
+    call description%add_real('b', '-', 'constant b', lower=0.0_wp, upper=100.0_wp)
+    call description%add_real('A', 'Pa', 'bulk modulus at rho_0', lower=least, upper=most)
+    call description%add_real('B', 'Pa', 'constant B', lower=0.0_wp, upper=most)
+    call description%add_real('E_0', 'J/kg', 'constant E_0', lower=least, upper=most)
+    call description%add_real('alpha', '-', 'constant alpha', lower=0.0_wp, upper=most)
+    call description%add_real('beta', '-', 'constant beta', lower=0.0_wp, upper=most)
     call description%add_real('E_IV', 'J/kg', 'energy of incipient vaporisation', lower=0.0_wp)
-    call description%add_real('E_CV', 'J/kg', 'energy of complete vaporisation', above=0.0_wp)
-    call description%add_real('c_v', 'J/(kg K)', 'heat capacity', above=0.0_wp)
-    call description%add_real('T_0', 'K', 'temperature at the start', lower=0.0_wp)
-    call description%add_real('eta_0', 'Pa s', 'viscosity', lower=0.0_wp)
-    call description%add_real('P_cav', 'Pa', 'smallest pressure', upper=0.0_wp)
+    call description%add_real('E_CV', 'J/kg', 'energy of complete vaporisation', lower=least, &
+                              upper=most)
+    call description%add_real('c_v', 'J/(kg K)', 'heat capacity', lower=least, upper=most)
+    call description%add_real('T_0', 'K', 'temperature at the start', lower=0.0_wp, upper=most)
+    call description%add_real('eta_0', 'Pa s', 'viscosity', lower=0.0_wp, upper=most)
+    call description%add_real('P_cav', 'Pa', 'smallest pressure', lower=-most**5, upper=0.0_wp)
     call description%add_real('h_i', 'm', 'length of the artificial viscosity, about a cell; for &
-                              &its flag', default=0.0_wp, lower=0.0_wp)
+                              &its flag', default=0.0_wp, lower=0.0_wp, upper=most)
     call description%add_string('flags', '"ISOTHERMAL": the energy is that of the cold curve; &
                                 &"USE_ARTIFICIAL_VISCOSITY": with h_i', is_list=.true.)
     call description%add_note('The viscosity acts, 2 eta_0 D''; in mpm_3d it has no effect.')

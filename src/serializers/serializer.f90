@@ -3,14 +3,17 @@ module mpm_serializer
   use mpm_configurable, only: configurable_t
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
+  use mpm_files, only: make_directories
   use mpm_history, only: add_history_properties, history_t
   use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
   use mpm_properties, only: properties_t
+  use mpm_run_file, only: name_as_file, write_run_file
   use mpm_store, only: store_t
   implicit none
   private
-  public :: add_save_properties, serializer_restore, serializer_save, serializer_t
+  public :: add_save_properties, serializer_name_run, serializer_restore, serializer_save, &
+            serializer_t
 
   !> A writer of frames.
   type, abstract, extends(configurable_t) :: serializer_t
@@ -25,6 +28,10 @@ module mpm_serializer
     integer :: skipped = 0
     !> Text of the config, for files that tell how they came about.
     character(:), allocatable :: config_text
+    !> Program, config and points, for the same.
+    character(:), allocatable :: run
+    !> Folder of frames.
+    character(:), allocatable :: frame_folder
     !> Folder of checkpoints; empty for none.
     character(:), allocatable :: save_folder
     !> Start of their names.
@@ -48,6 +55,8 @@ module mpm_serializer
     procedure :: check => serializer_check
     !> Make the folder of the frames.
     procedure(open_i), deferred :: open
+    !> Say beside the frames how they come about.
+    procedure :: name_run => serializer_name_run
     !> Write the state as the next frame.
     procedure(write_frame_i), deferred :: write_frame
     !> Whether there is a folder for checkpoints.
@@ -145,22 +154,46 @@ contains
     !> Checked properties, those of `add_save_properties`, `frame_folder`, `save_folder` and
     !! `run_name` among them.
     type(properties_t), intent(in) :: properties
-    integer :: i
 
+    self%frame_folder = properties%string('frame_folder')
     self%save_folder = properties%string('save_folder')
-    self%save_name = properties%string('run_name')
-    self%save_name = trim(self%save_name(:min(len(self%save_name), 160)))
-    do i = 1, len(self%save_name)
-      if (iachar(self%save_name(i:i)) < iachar(' ')) self%save_name(i:i) = '_'
-      if (self%save_name(i:i) == '/') self%save_name(i:i) = '_'
-    end do
-    if (len(self%save_name) == 0) self%save_name = 'mpm3d'
+    self%save_name = name_as_file(properties%string('run_name'))
     self%save_wall = properties%real('save_wall')
     self%save_time = properties%real('save_time')
     self%save_at_end = properties%integer('save_at_end') == 1
     self%save_on_signal = properties%integer('save_on_signal') == 1
-    call self%history%init(properties, properties%string('frame_folder'), self%save_name)
+    call self%history%init(properties, self%frame_folder, self%save_name)
   end subroutine serializer_init_saving
+
+  !> Say beside the frames, and beside the corners of domains, how they come about.
+  !!
+  !! Public since a class that overrides it can't call it by the name of an abstract parent.
+  subroutine serializer_name_run(self, model, goes_on, error)
+    !> The serializer, opened.
+    class(serializer_t), intent(in) :: self
+    !> The model at its start, or restored.
+    type(model_t), intent(in) :: model
+    !> Whether the run goes on from a checkpoint.
+    logical, intent(in) :: goes_on
+    !> It can't be written.
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i
+
+    if (.not. (allocated(self%run) .and. allocated(self%frame_folder))) return
+    call make_directories(self%frame_folder, error)
+    if (allocated(error)) return
+    call write_run_file(self%frame_folder, self%save_name, self%run, goes_on, self%frames, error)
+    do i = 1, size(model%bodies)
+      if (allocated(error)) return
+      associate (body => model%bodies(i)%body)
+        if (.not. allocated(body%points)) cycle
+        if (.not. allocated(body%points%domains)) cycle
+        if (.not. allocated(body%points%domains%folder)) cycle
+        call write_run_file(body%points%domains%folder, self%save_name, self%run, goes_on, &
+                            self%frames, error)
+      end associate
+    end do
+  end subroutine serializer_name_run
 
   !> Whether there is a folder for checkpoints.
   pure function serializer_can_save(self) result(can_save)

@@ -123,6 +123,9 @@ contains
                               &points, in the order of the points file, &
                               &fnd.<id>.<name>.<frame>.vtk the whole grid, 0 where the body has no &
                               &node. A / in a name becomes _.')
+    call description%add_note('<frame_folder>/<run_name>.run.txt says which program, config and &
+                              &points the frames come from, which mpm3d --describe-run prints for &
+                              &a frame. The frames are bytes of the state alone.')
     call description%add_note('binary = 1 writes bytes, highest first, and 4-byte integers, as the &
                               &format has it; digits has no effect then.')
     call description%add_note('A frame labelled t holds the state at t; frame 0 is the initial &

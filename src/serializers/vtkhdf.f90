@@ -15,8 +15,7 @@ module mpm_vtkhdf
   use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
   use mpm_properties, only: properties_t
-  use mpm_run_text, only: run_text
-  use mpm_serializer, only: add_save_properties, serializer_t
+  use mpm_serializer, only: add_save_properties, serializer_name_run, serializer_t
   use mpm_strings, only: nearest_name, string_t, to_text
   use mpm_window, only: window_t
   implicit none
@@ -46,6 +45,7 @@ module mpm_vtkhdf
     procedure, nopass :: describe => vtkhdf_describe
     procedure :: init => vtkhdf_init
     procedure :: open => vtkhdf_open
+    procedure :: name_run => vtkhdf_name_run
     procedure :: write_frame => vtkhdf_write_frame
     procedure :: finish => vtkhdf_finish
     procedure :: destination => vtkhdf_destination
@@ -159,6 +159,20 @@ contains
       end associate
     end do
   end subroutine vtkhdf_open
+
+  !> The files say themselves where they come from, histories do not.
+  subroutine vtkhdf_name_run(self, model, goes_on, error)
+    !> The serializer, opened.
+    class(vtkhdf_t), intent(in) :: self
+    !> The model at its start, or restored.
+    type(model_t), intent(in) :: model
+    !> Whether the run goes on from a checkpoint.
+    logical, intent(in) :: goes_on
+    !> It can't be written.
+    type(error_t), allocatable, intent(out) :: error
+
+    if (self%history%is_on()) call serializer_name_run(self, model, goes_on, error)
+  end subroutine vtkhdf_name_run
 
   !> Make a file, or go on in that of an earlier run; make its spare.
   subroutine prepare(self, model, body, of_nodes, error)
@@ -280,7 +294,7 @@ contains
                             &m of depth, in TYPE 4 per radian')
     if (allocated(self%config_text)) then
       call file%put('config', self%config_text)
-      call file%put('run', run_text(model, self%config_text))
+      call file%put('run', self%run)
     end if
     call file%leave()
     call file%enter('VTKHDF')

@@ -207,3 +207,9 @@ def files_of(folder: Path) -> dict[str, bytes]:
         for path in sorted(folder.iterdir())
         if path.is_file()
     }
+
+
+def frames_of(folder: Path) -> dict[str, bytes]:
+    """Return what `files_of` does, without the file that tells config and options of the run."""
+    found = files_of(folder)
+    return {name: data for name, data in found.items() if not name.endswith(".run.txt")}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 from bad_input import BAD_OUTPUT, CONFIG, expect_failure, write_scene
@@ -35,4 +34,5 @@ def test_folder_in_the_way_of_a_frame(mpm3d: Run, tmp_path: Path) -> None:
     assert result.returncode == BAD_OUTPUT
     assert "fnd.1.second.0000000000.vtk: error: " in result.stderr
     assert "a folder of that name is in the way" in result.stderr
-    assert os.listdir(tmp_path / "frames") == ["fnd.1.second.0000000000.vtk"]
+    frames = [path.name for path in (tmp_path / "frames").glob("*.vtk")]
+    assert frames == ["fnd.1.second.0000000000.vtk"]

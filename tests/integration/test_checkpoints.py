@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from checkpoints import DT, FRAME, STEPS, checkpoint, files_of, write_scene
+from checkpoints import DT, FRAME, STEPS, checkpoint, files_of, frames_of, write_scene
 from frames import read_frame, read_series
 from scene import Run
 
@@ -46,10 +46,10 @@ def test_the_last_two_are_kept(mpm3d: Run, tmp_path: Path) -> None:
 def test_checkpoints_change_no_frame(mpm3d: Run, tmp_path: Path) -> None:
     """A run with checkpoints has the same frames as one without."""
     saved_scene(mpm3d, tmp_path)
-    with_them = files_of(tmp_path / "output")
+    with_them = frames_of(tmp_path / "output")
     write_scene(tmp_path)
     assert mpm3d("-c", "scene.cfg", "-q", cwd=tmp_path).returncode == 0
-    assert files_of(tmp_path / "output") == with_them
+    assert frames_of(tmp_path / "output") == with_them
     assert len(with_them) == 6 * (STEPS // FRAME + 1)
 
 
@@ -175,7 +175,7 @@ def test_describe_run(mpm3d: Run, tmp_path: Path) -> None:
         assert saved.stdout == series.stdout
         described.append(saved.stdout.splitlines())
     version = mpm3d("--version", cwd=tmp_path).stdout
-    keys = ["program", "revision", "compiler", "build", "config", *(3 * ["points"])]
+    keys = ["program", "revision", "compiler", "build", "config", "set", "set", *(3 * ["points"])]
     assert [line.partition(":")[0] for line in described[0]] == keys
     for line in described[0][:3]:
         assert line.partition(":")[2].strip().removeprefix("mpm3d ") in version
@@ -195,14 +195,14 @@ def test_later_stop_time(mpm3d: Run, tmp_path: Path) -> None:
     longer = ("--set", f"driver.properties={{{-0.02 + 80 * DT!r}}}")
     result = mpm3d("-c", "scene.cfg", *longer, "-q", cwd=tmp_path)
     assert result.returncode == 0
-    expected = files_of(tmp_path / "output")
+    expected = frames_of(tmp_path / "output")
     for path in (tmp_path / "output").iterdir():
         path.unlink()
     end = ("--set", "serializer.int-properties={10, save_at_end = 1}")
     assert mpm3d("-c", "scene.cfg", *end, "-q", cwd=tmp_path).returncode == 0
     result = mpm3d("-r", checkpoint(STEPS), *longer, "-q", cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
-    found = files_of(tmp_path / "output")
+    found = frames_of(tmp_path / "output")
     assert found.keys() == expected.keys()
     assert len(found) == 6 * 9
     for name, data in found.items():
@@ -245,7 +245,7 @@ def test_options_of_the_run_are_kept(mpm3d: Run, tmp_path: Path) -> None:
     names = 'serializer.str-properties={"second", "save", "test"}'
     result = mpm3d("-r", checkpoint(40), "-q", "--set", names, cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
-    second = files_of(tmp_path / "second")
+    second = frames_of(tmp_path / "second")
     assert len(second) == 2 * 6
     assert all(frames[name] == data for name, data in second.items() if name in frames)
 
@@ -296,9 +296,9 @@ def test_signal_saves_and_stops(
     stop = ("--set", f"driver.properties={{{-0.02 + (step + 20) * DT!r}}}")
     result = mpm3d("-r", f"save/{path.name}", *stop, cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
-    interrupted = files_of(tmp_path / "output")
+    interrupted = frames_of(tmp_path / "output")
     assert mpm3d("-c", "scene.cfg", *stop, cwd=tmp_path).returncode == 0
-    assert files_of(tmp_path / "output") == interrupted
+    assert frames_of(tmp_path / "output") == interrupted
 
 
 def test_signal_without_saving(executable: Path, tmp_path: Path) -> None:

@@ -81,7 +81,7 @@ def test_scene(mpm3d: Run, copy: Path, scene: str) -> None:
     folder = re.search(r"^frames: (\d+) in (.+) \(", result.stdout, re.M)
     assert folder
     assert folder[1] == "2"
-    names = [path.name for path in (copy / folder[2]).iterdir()]
+    names = [path.name for path in (copy / folder[2]).glob("*.vtk")]
     assert len(names) == 2 * 2 * text.count("\nbody")
     assert all(NAME.fullmatch(name) for name in names)
 

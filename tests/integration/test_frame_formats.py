@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import resource
 import subprocess
 from pathlib import Path
@@ -32,8 +31,8 @@ def test_binary_frames_hold_what_text_holds(
         run_scene(mpm3d, scene, folder, "--set", options)
         folders.append(folder / "frames")
     text, binary = folders
-    names = sorted(os.listdir(text))
-    assert names == sorted(os.listdir(binary))
+    names = sorted(path.name for path in text.glob("*.vtk"))
+    assert names == sorted(path.name for path in binary.glob("*.vtk"))
     for name in names:
         assert (binary / name).read_bytes().split(b"\n")[2] == b"BINARY"
         read, other = read_frame(text / name), read_frame(binary / name)
@@ -56,8 +55,8 @@ def test_frames_without_nodes(mpm3d: Run, tmp_path: Path, serializer: str) -> No
         run_scene(mpm3d, scene, tmp_path / str(nodes), "--set", options)
     some, everything = (tmp_path / str(nodes) / "frames" for nodes in (0, 1))
     points = sorted(path.name for path in everything.glob("fpd.*"))
-    assert sorted(os.listdir(some)) == points
-    assert len(os.listdir(everything)) == 2 * len(points)
+    assert sorted(path.name for path in some.glob("*.vtk")) == points
+    assert len(list(everything.glob("*.vtk"))) == 2 * len(points)
     for name in points:
         assert (some / name).read_bytes() == (everything / name).read_bytes()
 

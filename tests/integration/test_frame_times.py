@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -74,5 +73,5 @@ def test_rate_above_the_steps(mpm3d: Run, tmp_path: Path) -> None:
 def test_rate_0(mpm3d: Run, tmp_path: Path) -> None:
     """Rate 0 writes the initial state only."""
     run_scene(mpm3d, drop_scene(rate=0.0), tmp_path)
-    names = sorted(os.listdir(tmp_path / "frames"))
+    names = sorted(path.name for path in (tmp_path / "frames").glob("*.vtk"))
     assert names == ["fnd.0.drop.0000000000.vtk", "fpd.0.drop.0000000000.vtk"]

@@ -104,7 +104,7 @@ def frames_of(run: Run, folder: Path, config: str) -> dict[str, bytes]:
     write_scene(folder, config)
     result = run("-c", "scene.cfg", cwd=folder)
     assert (result.returncode, result.stderr) == (0, "")
-    return {path.name: path.read_bytes() for path in (folder / "frames").iterdir()}
+    return {path.name: path.read_bytes() for path in (folder / "frames").glob("*.vtk")}
 
 
 @pytest.fixture(scope="module")

@@ -31,7 +31,7 @@ def frames_of(
     result = run("-c", "scene.cfg", *options, cwd=folder, environment={"OMP_NUM_THREADS": "4"})
     assert (result.returncode, result.stderr) == (0, "")
     assert told in result.stdout
-    return {path.name: path.read_bytes() for path in sorted((folder / "frames").iterdir())}
+    return {path.name: path.read_bytes() for path in sorted((folder / "frames").glob("*.vtk"))}
 
 
 @pytest.mark.parametrize("sim_type", [2, 4])

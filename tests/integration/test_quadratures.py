@@ -130,7 +130,7 @@ def test_corners_belong_to_their_frame(mpm3d: Run, tmp_path: Path) -> None:
     scene = Scene(2, [1.0, 1.0], [8, 8], [Body("block", rows)], 0.1, dt=5e-3, rate=10.0)
     scene.gravity = [0.0, 0.0]
     run(mpm3d, scene, tmp_path, 4)
-    names = sorted(path.name for path in (tmp_path / "corners").iterdir())
+    names = sorted(path.name for path in (tmp_path / "corners").glob("*.vtk"))
     assert names == [f"fpd.0.block.corners.{frame:010d}.vtk" for frame in (0, 1)]
     corners = []
     for frame, name in enumerate(names):

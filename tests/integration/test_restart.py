@@ -64,7 +64,7 @@ def is_behind(name: str) -> bool:
     """Whether the number of a frame is behind the checkpoint."""
     number = re.search(r"\.(\d{10})\.vtk$", name)
     if number is None:
-        assert name.endswith((".vtkhdf", ".history.csv"))
+        assert name.endswith((".vtkhdf", ".history.csv", ".run.txt"))
         return True
     return int(number[1]) > SAVED // FRAME
 

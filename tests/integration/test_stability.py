@@ -111,7 +111,7 @@ def test_run_that_blows_up(mpm3d: Run, tmp_path: Path, sim_type: int) -> None:
     )
     assert "stable step" in hint
 
-    files = sorted((tmp_path / "frames").iterdir())
+    files = sorted((tmp_path / "frames").glob("*.vtk"))
     # One frame each five steps until then, points and nodes of two bodies.
     frames = (int(match[3]) - 1) // 5 + 1
     assert len(files) == 4 * frames
@@ -129,7 +129,7 @@ def test_fast_points_stop_the_run(mpm3d: Run, tmp_path: Path) -> None:
     assert result.returncode == 3
     assert 'error: body "bullet": point 1 moved more than a cell in step 1' in result.stderr
     assert "dt too large" in result.stderr
-    assert len(list((tmp_path / "frames").iterdir())) == 2
+    assert len(list((tmp_path / "frames").glob("*.vtk"))) == 2
 
 
 def test_points_that_leave_the_grid(mpm3d: Run, tmp_path: Path) -> None:
