@@ -14,10 +14,11 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_GENERATOR DEB TGZ)
 
-# dpkg-shlibdeps, of the package dpkg-dev, finds the packages of the shared libraries.
+# dpkg-shlibdeps, of the package dpkg-dev, finds the packages of the shared libraries, with `file`.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3 (>= 3.11), python3-numpy, python3-matplotlib")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "gfortran, cmake, ninja-build, libhdf5-dev, python3-h5py, python3-pil")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/src/cmake/prerm)
 include(CPack)

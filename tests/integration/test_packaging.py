@@ -175,6 +175,7 @@ def test_package(package: Path, build: Path, tmp_path: Path) -> None:
     uses_hdf5 = "HDF5_Fortran_LIBRARY_hdf5:" in (build / "CMakeCache.txt").read_text("utf-8")
     assert uses_hdf5 == any(name.startswith("libhdf5-fortran") for name in needed)
     assert "python3-numpy" in fields["Recommends"]
+    assert "mpm_pygen/__pycache__" in call("dpkg-deb", "--info", package, "prerm")
     call("dpkg-deb", "--extract", package, tmp_path / "root")
     prefix = tmp_path / "root/usr"
     look(prefix)
