@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from figures import figure_text
+
 ROOT = Path(__file__).resolve().parents[2]
 #: From a page of the class reference to the root of the project.
 UP = "../../.."
@@ -79,7 +81,7 @@ def scenes(name: str) -> str:
 
 def checks_text(name: str, folder: str, stem: str) -> str:
     """Return the section of a page on the checks of a class."""
-    lines = ["## Checks", ""]
+    lines = ["## Checks", "", *figure_text(name, cases())]
     for path in unit_tests(folder, stem):
         place = f"{UP}/{path.relative_to(ROOT)}"
         tests = TEST.findall(path.read_text("utf-8"))

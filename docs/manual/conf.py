@@ -26,9 +26,14 @@ LOG = logging.getLogger(__name__)
 project = "mpm3d"
 author = "the mpm3d contributors"
 copyright = author
+# CMakeLists.txt is where the version is set.
+BUILD = (ROOT / "CMakeLists.txt").read_text("utf-8")
+release = BUILD.partition("project(mpm3d VERSION ")[2].split()[0]
 root_doc = "README"
 include_patterns = [
     "README.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
     "docs/**.md",
     "configs/**README.md",
     "mpm_pygen/README.md",
@@ -43,7 +48,7 @@ myst_url_schemes = ["http", "https", "mailto", "source"]
 nitpicky = True
 highlight_language = "none"
 html_theme = "furo"
-html_title = "mpm3d"
+html_title = f"mpm3d {release}"
 html_math_renderer = "mathml"
 html_copy_source = False
 html_show_sphinx = False
@@ -66,6 +71,7 @@ CHAPTERS = {
         "docs/differences",
         "docs/citing",
     ],
+    "Project": ["CHANGELOG", "CONTRIBUTING"],
     "Scenes and tools": ["docs/scenes", "configs/README", "mpm_pygen/README"],
     "Evidence": [
         "docs/which_method",

@@ -37,7 +37,7 @@ contains
     character(:), allocatable :: text
     character(*), parameter :: nl = new_line('a')
 
-    text = 'mpm3d: material point method for solids and grains'//nl//nl// &
+    text = 'mpm3d: material point method for solids, grains and fluids'//nl//nl// &
            'usage: mpm3d -c FILE [options]     run the scene of a config'//nl// &
            '       mpm3d -r FILE [options]     go on from a checkpoint'//nl// &
            '       mpm3d -c FILE --check       read everything, run nothing, report sizes'//nl// &

@@ -1,5 +1,5 @@
 # `cmake --install`: the program, the library, its modules, and a package for find_package(mpm3d),
-# with the function mpm3d_add_program.
+# with the function mpm3d_add_program; completion, mpm_pygen, manual and scenes.
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/mpm3d)
 
@@ -30,3 +30,22 @@ install(FILES ${PROJECT_BINARY_DIR}/mpm3dConfig.cmake ${PROJECT_BINARY_DIR}/mpm3
 
 install(FILES ${CMAKE_CURRENT_SOURCE_DIR}/src/app/mpm3d.bash RENAME mpm3d
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+
+# mpm_pygen stands where Debian's Python looks for packages when the prefix is /usr.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/mpm_pygen/src/mpm_pygen DESTINATION lib/python3/dist-packages
+  FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/src/app/mpm-pygen DESTINATION ${CMAKE_INSTALL_BINDIR})
+
+# The folders of the project that people read keep their places, so that links between them lead on.
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+  ${PROJECT_SOURCE_DIR}/CITATION.cff ${PROJECT_SOURCE_DIR}/CONTRIBUTING.md ${PROJECT_SOURCE_DIR}/LICENSE
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm3d)
+install(FILES ${PROJECT_SOURCE_DIR}/mpm_pygen/README.md
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm3d/mpm_pygen)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm3d
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg"
+  PATTERN "manual" EXCLUDE PATTERN "notes" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm3d
+  USE_SOURCE_PERMISSIONS
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.cfg" PATTERN "*.parts" PATTERN "*.sh")
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)

@@ -144,7 +144,7 @@ contains
 
     do i = 1, size(model%contacts)
       call sum_contact_force(model%contacts(i)%contact, model%bodies, force, known)
-      self%impulse(:, i) = self%impulse(:, i) + model%last_dt*force
+      self%impulse(:, i) = self%impulse(:, i) + model%last_kick*force
     end do
     if (self%dissipation) then
       do i = 1, size(model%bodies)

@@ -29,6 +29,9 @@ module mpm_model
     real(wp) :: dt = 0.0_wp
     !> Length of the last step; 0 before the first. [s]
     real(wp) :: last_dt = 0.0_wp
+    !> Time over which the forces of the last step acted: its length, or that between the middles of
+    !! the last two steps. [s]
+    real(wp) :: last_kick = 0.0_wp
     !> Steps made.
     integer(lp) :: step = 0
     !> Most bytes that points and nodes may take; 0 for what the machine has.

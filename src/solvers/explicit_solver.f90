@@ -218,6 +218,7 @@ contains
     kick = dt
     call model%clock%enter(phase_contact)
     if (self%staggered) kick = 0.5_wp*(model%last_dt + dt)
+    model%last_kick = kick
     do i = 1, size(model%bodies)
       associate (body => model%bodies(i)%body)
         if (.not. body%active) cycle

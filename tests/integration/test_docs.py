@@ -19,6 +19,7 @@ from scene import DIM, MATERIALS, NVEL, Array, Run
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference"
 DOCUMENTS = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
+FIGURES = REFERENCE / "figures"
 PAGES = sorted(set(REFERENCE.glob("*/*.md")) - set(REFERENCE.glob("notes/*.md")))
 
 FENCED = re.compile(r"^```(.*?)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -129,6 +130,10 @@ def test_every_class_has_an_up_to_date_page(executable: Path, tmp_path: Path) ->
     """Writing the reference anew changes nothing; scripts/docs repairs it."""
     command = [sys.executable, ROOT / "scripts" / "docs", executable, "--to", tmp_path]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    figures = {path.name for path in (tmp_path / "figures").iterdir()}
+    assert figures == {path.name for path in FIGURES.iterdir()}
+    shown = re.compile(r"\(\.\./figures/(.*)\)")
+    assert figures == {name for page in PAGES for name in shown.findall(page.read_text("utf-8"))}
     written = {path.relative_to(tmp_path): path for path in tmp_path.rglob("*.md")}
     kept = {path.relative_to(REFERENCE): path for path in [*PAGES, *REFERENCE.glob("*.md")]}
     assert len(written) > 10

@@ -468,4 +468,4 @@ def _sides(frames: Frames, body: str) -> float:
 def need_matplotlib() -> None:
     """Say what to do when Matplotlib is not there."""
     if find_spec("matplotlib") is None:
-        raise PygenError("pictures need the package matplotlib (pip install matplotlib)")
+        raise PygenError("pictures need the package matplotlib (Debian: python3-matplotlib)")

@@ -136,7 +136,7 @@ def _read_pixels(path: Path) -> NDArray[np.uint8]:
     try:
         from PIL import Image, UnidentifiedImageError
     except ImportError:
-        raise PygenError("pictures need the package Pillow (pip install pillow)") from None
+        raise PygenError("pictures need the package Pillow (Debian: python3-pil)") from None
     try:
         with Image.open(path) as picture:
             return np.asarray(picture.convert("RGBA"), dtype=np.uint8)

@@ -87,7 +87,7 @@ class HdfSeries:
             import h5py
         except ImportError:
             raise PygenError(
-                f"{self.path}: VTKHDF files need the package h5py (pip install h5py)"
+                f"{self.path}: VTKHDF files need the package h5py (Debian: python3-h5py)"
             ) from None
         try:
             return h5py.File(self.path, "r")
