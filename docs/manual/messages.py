@@ -86,7 +86,7 @@ def form(expression: str) -> str:
         literal = LITERAL.fullmatch(part)
         text += literal[1].replace("''", "'") if literal else OPEN
     # Templates name the role.
-    return re.sub(f"{OPEN}+", OPEN, text.replace("@role@", OPEN)).strip()
+    return re.sub(f"{OPEN}+", OPEN, re.sub("@(role|plural)@", OPEN, text)).strip()
 
 
 def forms(expression: str, code: str) -> list[str]:

@@ -25,7 +25,7 @@ _mpm3d() {
       ;;
     --describe)
       mapfile -t COMPREPLY < <(compgen -W \
-        "$("$program" --list 2>/dev/null | sed -n 's/^  \([^ ]*\) .*/\1/p')" -- "$current")
+        "$("$program" --list 2>/dev/null | sed -n '/  not available /d;s/^  \([^ ][^ ]*\) .*/\1/p')" -- "$current")
       ;;
     --threads)
       mapfile -t COMPREPLY < <(compgen -W "$(seq "$(nproc 2>/dev/null || echo 1)")" -- "$current")

@@ -7,12 +7,13 @@ program mpm3d
   use mpm_command_line, only: command_line_t, read_command_line, usage
   use mpm_console, only: finish_output, put_line
   use mpm_configurator, only: configure
-  use mpm_describe_text, only: describe_text, list_line
+  use mpm_describe_text, only: describe_text, list_line, missing_lines
   use mpm_description, only: description_t
   use mpm_errors, only: err_usage, error_t, raise
   use mpm_job, only: job_t
   use mpm_job_report, only: report_job
   use mpm_monitor, only: monitor_t, quiet, verbose
+  use mpm_original_classes, only: missing_reason
   use mpm_phase_clock, only: phase_clock_t, phase_setup
   use mpm_registry, only: describe_classes, role_names
   use mpm_restart, only: restart
@@ -122,6 +123,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(string_t), allocatable :: roles(:)
     type(description_t), allocatable :: descriptions(:)
+    character(:), allocatable :: rest
     integer :: i, j
 
     if (len(role) > 0) then
@@ -140,6 +142,8 @@ contains
       do j = 1, size(descriptions)
         call put_line(list_line(descriptions(j)))
       end do
+      rest = missing_lines(descriptions)
+      if (len(rest) > 0) call put_line(rest)
     end do
   end subroutine list_classes
 
@@ -151,7 +155,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(string_t), allocatable :: roles(:), known(:)
     type(description_t), allocatable :: descriptions(:)
-    character(:), allocatable :: hint
+    character(:), allocatable :: hint, why
     integer :: i, j
 
     call role_names(roles)
@@ -166,6 +170,12 @@ contains
         end if
         call append_text(known, descriptions(j)%name)
       end do
+    end do
+    do i = 1, size(roles)
+      why = missing_reason(roles(i)%text, name)
+      if (len(why) == 0) cycle
+      call raise(error, err_usage, 'the class "'//name//'" of mpm_3d is not available', hint=why)
+      return
     end do
     hint = nearest_name(name, known)
     if (len(hint) > 0) hint = 'did you mean "'//hint//'"?   '

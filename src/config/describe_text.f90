@@ -2,13 +2,17 @@
 module mpm_describe_text
   use mpm_description, only: description_t, kind_integer, kind_real, kind_string, property_t
   use mpm_kinds, only: wp
+  use mpm_original_classes, only: class_state, describe_original, is_new, missing, &
+                                  original_class_t
   use mpm_strings, only: to_text
   implicit none
   private
-  public :: describe_text, list_line
+  public :: describe_text, list_line, missing_lines
 
   !> Columns of the text.
   integer, parameter :: width = 92
+  !> Columns of names in a list, and of all that stands in front of a purpose.
+  integer, parameter :: name_width = 28, head_width = 45
 
 contains
 
@@ -16,15 +20,55 @@ contains
   pure function list_line(description) result(text)
     !> The class.
     type(description_t), intent(in) :: description
-    !> Its name and the first sentence of its purpose.
+    !> Its name, what became of the class of mpm_3d, and the first sentence of its purpose; below,
+    !> what is better.
     character(:), allocatable :: text
+    character(:), allocatable :: state, why
     integer :: last
 
     last = index(description%purpose, '. ')
     if (last == 0) last = len(description%purpose)
-    text = '  '//description%name//repeat(' ', max(1, 28 - len(description%name)))// &
-           description%purpose(:last)
+    call class_state(description%role, description%name, state, why)
+    if (state == missing) then  ! a class that a user has added under this name
+      state = is_new
+      why = ''
+    end if
+    text = head_of_line(description%name, state)//description%purpose(:last)
+    if (len(why) > 0) text = text//new_line('a')//repeat(' ', head_width)//state//': '//why
   end function list_line
+
+  !> Lines for the classes of mpm_3d that are not available.
+  pure function missing_lines(descriptions) result(text)
+    !> The classes of one role that are here.
+    type(description_t), intent(in) :: descriptions(:)
+    !> A line each, with the reason; empty when all are here.
+    character(:), allocatable :: text
+    type(original_class_t), allocatable :: classes(:)
+    integer :: i, j
+
+    text = ''
+    if (size(descriptions) == 0) return
+    call describe_original(descriptions(1)%role, classes)
+    do i = 1, size(classes)
+      if (classes(i)%state /= missing) cycle
+      if (any([(descriptions(j)%name == classes(i)%name, j=1, size(descriptions))])) cycle
+      if (len(text) > 0) text = text//new_line('a')
+      text = text//head_of_line(classes(i)%name, missing)//classes(i)%why
+    end do
+  end function missing_lines
+
+  !> Name and state of a class, in columns.
+  pure function head_of_line(name, state) result(text)
+    !> Name of the class.
+    character(*), intent(in) :: name
+    !> Its state.
+    character(*), intent(in) :: state
+    !> What stands in front of its purpose.
+    character(:), allocatable :: text
+
+    text = '  '//name//repeat(' ', max(1, name_width - len(name)))//state
+    text = text//repeat(' ', max(1, head_width - len(text)))
+  end function head_of_line
 
   !> Purpose, properties, remarks, source and an example of a class.
   pure function describe_text(description) result(text)

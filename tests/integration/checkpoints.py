@@ -99,8 +99,8 @@ def registered(run: Run, folder: Path) -> list[Class]:
     for line in listed.stdout.splitlines():
         if not line.startswith(" "):
             role = line.strip()
-        elif role != "part":
-            name = line.split()[0]
+        elif role != "part" and (match := re.match(r"  (\w+) +(?!not available)\w", line)):
+            name = match[1]
             described = run("--describe", name, cwd=folder)
             assert described.returncode == 0
             example = described.stdout.partition("\nexample\n")[2]

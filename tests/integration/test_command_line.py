@@ -24,6 +24,52 @@ ROLES = [
     "contact",
     "probe",
 ]
+ROOT = Path(__file__).resolve().parents[2]
+STATES = "as mpm_3d|improved|new|not available"
+#: Every class that configs of mpm_3d v3 can name.
+REGISTRY = {
+    "serializer": "DefaultVTK MinimalVTK SlicePointsVTK DebugVTK FVMDefaultVTK",
+    "driver": """DefaultDriver ColumnCollapseDriver UserDefinedGravityDriver CavityFlowDriver
+        BallisticDriver ChuteFlowDriver FishRandomSampleDriver FishMixtureModelRandomSampleDriver
+        FiniteVolumeDriver FVMVariableStepDriver FVMNumericalDampingDriver FVMBolideImpactDriver
+        FVMBolideRestartDriver""",
+    "solver": """ExplicitUSL ParallelExplicitUSL ThreadPoolExplicitUSL
+        ExplicitUSLwithVolumetricStrainSmoothing ExplicitMixtureSolver TGVErrorSolver
+        ShiftedTGVErrorSolver GeneralizedVortexErrorSolver FVMDefaultSolver FVMRungeKuttaSolver
+        FVMSteadyStateSolver FVMMixtureSolver FVMMixtureSolverRK4 FVMStaticMixtureSolverRK4
+        ParallelMixtureSolverRK4""",
+    "grid": """CartesianLinear CartesianPeriodic CartesianCustom CartesianCubic CartesianQuadratic
+        CartesianUGIMP CartesianCubicCustom CartesianQuadraticCustom CartesianUGIMPCustom
+        CartesianCubic_Offset Linear1DNonUniform TriangularGridLinear TetrahedralGridLinear
+        FVMCartesian FVMGmsh2D FVMGmsh3D FVMLinear1DNonUniform""",
+    "body": """DefaultBody HydrostaticBody LaunchedBody PrestressedBody WheelBody FVMDefaultBody
+        FVMRocketBody""",
+    "points": """DefaultPoints ThreadPoolPoints CartesianPoints GmshPoints
+        ImprovedQuadraturePoints""",
+    "part": "Ball Box SineWave SandPile",
+    "nodes": "DefaultNodes",
+    "material": """IsotropicLinearElasticity Sand_SachithLocal BarotropicViscousFluid
+        CompressibleNeohookeanElasticity SlurryGranularPhase SlurryFluidPhase
+        SlurryGranularPhase_wUnderCompaction Cornstarch TillotsonEOSFluid BreakageMechanicsSand
+        CompressibleBreakageMechanicsSand CompressibleBreakageMechanicsRestart
+        CompressibleDamageMechanicsSandstone Fish FVMBarotropicViscousFluid FVMSlurryFluidPhase
+        FVMCarmanKozenyFluid FVMIdealGas FVMSlurryGasPhase""",
+    "boundary": """CartesianBox CartesianSmoothBox CartesianFrictionalBox CartesianBoxCustom
+        AssignedVelocity GeneralCustomBoundary""",
+    "contact": """ContactHuang ContactHuang_ReflectedBoundary ContactRigid_ReflectedBoundary
+        ContactLinked SlurryMixture SlurryContact SlurryContact_ReflectedBoundary""",
+}
+#: Those of them that are not here, beside the FVM ones.
+MISSING = {
+    "FiniteVolumeDriver",
+    "ParallelMixtureSolverRK4",
+    "TGVErrorSolver",
+    "ShiftedTGVErrorSolver",
+    "GeneralizedVortexErrorSolver",
+    "CompressibleBreakageMechanicsSand",
+    "CompressibleBreakageMechanicsRestart",
+    "CompressibleDamageMechanicsSandstone",
+}
 
 
 def touching_scene() -> Scene:
@@ -40,16 +86,24 @@ def touching_scene() -> Scene:
     )
 
 
+def entry(line: str) -> tuple[str, str, str]:
+    """Return name, state and purpose or reason of a line of --list; no name: what is better."""
+    match = re.fullmatch(rf"  (\w+|) +({STATES}):? +(.*)", line)
+    assert match is not None, line
+    return match[1], match[2], match[3]
+
+
 def listed_classes(run: Run, folder: Path) -> dict[str, list[str]]:
-    """Return the classes by role, as --list prints them."""
+    """Return the classes by role, as --list prints them, without those that are missing."""
     result = run("--list", cwd=folder)
     assert (result.returncode, result.stderr) == (0, "")
     role, classes = "", dict[str, list[str]]()
     for line in result.stdout.splitlines():
-        if line.startswith("  "):
-            name, purpose = line.split(maxsplit=1)
-            assert len(purpose) > 20
-            classes[role].append(name)
+        if line.startswith(" "):
+            name, state, text = entry(line)
+            assert len(text) > 20 or state == "improved"
+            if name and state != "not available":
+                classes[role].append(name)
         else:
             role = line
             classes[role] = []
@@ -112,8 +166,45 @@ def test_list_of_a_role(mpm3d: Run, tmp_path: Path, role: str) -> None:
     head, *lines = result.stdout.splitlines()
     assert head == role
     singular = {"bodies": "body", "boundaries": "boundary"}.get(role, role.rstrip("s"))
-    names = [line.split()[0] for line in lines]
+    entries = [entry(line) for line in lines]
+    names = [name for name, state, _ in entries if name and state != "not available"]
     assert names == listed_classes(mpm3d, tmp_path)[singular]
+
+
+def test_list_has_every_class_of_mpm_3d(mpm3d: Run, tmp_path: Path) -> None:
+    """Each is listed under its role with a state; a reason stands with all but those kept."""
+    for role, names in REGISTRY.items():
+        result = mpm3d("--list", role, cwd=tmp_path)
+        assert (result.returncode, result.stderr) == (0, "")
+        entries = [entry(line) for line in result.stdout.splitlines()[1:]]
+        states = {name: state for name, state, _ in entries if name}
+        improved = sum(state == "improved" for name, state, _ in entries if not name)
+        assert improved == sum(state == "improved" for state in states.values())
+        for name in names.split():
+            missing = name.startswith("FVM") or name in MISSING
+            assert name in states, name
+            assert (states[name] == "not available") == missing, name
+            assert states[name] != "new", name
+            if missing:
+                described = mpm3d("--describe", name, cwd=tmp_path)
+                assert described.returncode == 1
+                reason = next(text for other, _, text in entries if other == name)
+                assert f'class "{name}" of mpm_3d is not available' in described.stderr
+                assert reason in described.stderr
+        others = [state for name, state in states.items() if name not in names.split()]
+        assert set(others) <= {"new"}
+
+
+def test_cases_in_place_of_solvers() -> None:
+    """The cases that the messages name are there."""
+    source = (ROOT / "src" / "config" / "original_classes.f90").read_text("utf-8")
+    named = re.findall(r"a case of the verification,[ &\n]*(\w+)", source)
+    assert sorted(named) == ["taylor_green", "taylor_green", "vortex"]
+    pages = re.findall(r"docs/verification/\w+\.md", source)
+    assert len(pages) == len(named)
+    for name, page in zip(named, pages, strict=True):
+        assert (ROOT / "verification" / "cases" / f"{name}.py").is_file()
+        assert f"({name})" in (ROOT / page).read_text("utf-8")
 
 
 def test_describe_every_class(mpm3d: Run, tmp_path: Path) -> None:

@@ -11,9 +11,17 @@ from typing import Any
 import matplotlib.image
 import numpy as np
 import pytest
-from harness.case import Finding, below, near
+from harness.case import Finding, Published, Results, below, near
 from harness.curves import Judged, find_problems
-from harness.pages import bound_texts, grouped, number, percent, slug, text_cell
+from harness.pages import (
+    bound_texts,
+    grouped,
+    number,
+    percent,
+    signed_percent,
+    slug,
+    text_cell,
+)
 from harness.plots import draw_convergence, draw_points_per_cell, draw_work
 from harness.report import clean, used, write_report
 from harness.sheets import DPI, WIDTH
@@ -112,6 +120,33 @@ def test_family_page_tells_orders_findings_and_reasons(tmp_path: Path) -> None:
     assert "| 1 | 8 | 0.5 | 16 | 80 | 0.5 | 100 |" in hard
     assert hard.count("Coulomb") == 1
     assert "![" not in hard
+
+
+def test_published_values_stand_beside_ours(tmp_path: Path) -> None:
+    """A line for each value, with the run that gave ours; only for cases that have some."""
+
+    def published(results: Results) -> list[Published]:
+        ours = results.column("slip")
+        return [
+            Published("slip", "Author 1999 | table", 2.0, ours[-1]),
+            Published("slip", "Author 2000", 0.25, ours[0], run=0),
+        ]
+
+    case = make_case("block", error="", family="Hard cases")
+    case.published = published
+    row = make_row(7, (8, 16), case="block", sim_type=2, options=[("angle", "10")])
+    records = [make_record(row, 8, {"slip": 0.5}), make_record(row, 16, {"slip": 1.5})]
+    bad = make_row(8, (8,), case="block", sim_type=2)
+    failed = make_record(bad, 8, {}, problem="exit status 1")
+    judged: list[Judged] = [(row, records, []), (bad, [failed], []), make_judged()[0]]
+    write_report(tmp_path, {**CASES, "block": case}, judged, PROGRAM)
+    page = (tmp_path / "hard_cases.md").read_text()
+    assert "- [Against published values](#against-published-values)" in page
+    start = "| [The block](#the-block-block) | 2 | linear, 2 ppc, angle=10 | slip |"
+    assert rf"{start} 2 (Author 1999 \| table) | 1.5 | -25 % | 16 | 32 | 0.000512 |" in page
+    assert f"{start} 0.25 (Author 2000) | 0.5 | +100 % | 8 | 16 | 0.000128 |" in page
+    assert page.count("(Author") == 2
+    assert "Against published values" not in (tmp_path / "axial_bar.md").read_text()
 
 
 def test_cheapest_method_is_named(tmp_path: Path) -> None:
@@ -322,5 +357,6 @@ def test_texts() -> None:
     assert percent(0.001) == "0.1 %"
     assert percent(0.976) == "98 %"
     assert percent(1.0) == "100 %"
+    assert [signed_percent(x) for x in (0.05, -0.05, math.nan)] == ["+5 %", "-5 %", "-"]
     assert slug("A wave, TYPE 2 (wave_2)") == "a-wave-type-2-wave_2"
     assert clean({"a": [1], "b": -math.inf, "key": "x"}) == {"a": [1], "b": None}

@@ -119,6 +119,25 @@ def below(name: str, value: float, bound: float, reason: str) -> Finding:
     return Finding(name, value, 0.0, bound, math.nan, reason)
 
 
+@dataclass(frozen=True)
+class Published:
+    """A value that others have published, and ours."""
+
+    #: What it is, with unit or scale.
+    quantity: str
+    #: Author and year.
+    source: str
+    value: float
+    ours: float
+    #: The run of the row that gave ours; -1 is the finest.
+    run: int = -1
+
+    @property
+    def difference(self) -> float:
+        """Ours less the published value, over the published value; nan when that is 0."""
+        return (self.ours - self.value) / self.value if self.value else math.nan
+
+
 @dataclass
 class Results:
     """The runs of one row of the matrix, by rising resolution."""
@@ -184,6 +203,8 @@ class Case:
     order: float = 0.0
     #: Whether runs may end with exit status 3, the simulation went bad.
     may_fail: bool = False
+    #: Values of the literature beside those of a row, for a table; bounds belong to `judge`.
+    published: Callable[[Results], list[Published]] | None = None
     name: str = ""
 
     def make_scene(self, p: Parameters) -> Scene:
@@ -207,7 +228,10 @@ def load_cases() -> dict[str, Case]:
 
 
 def load_case(path: Path) -> Case:
-    """Import one case; it finds what it shares with others beside it."""
+    """Import one case; it finds what it shares with others beside it.
+
+    A function `published` of the file is that of the case.
+    """
     if str(path.parent) not in sys.path:
         sys.path.insert(0, str(path.parent))
     spec = importlib.util.spec_from_file_location(path.stem, path)
@@ -218,4 +242,5 @@ def load_case(path: Path) -> Case:
     spec.loader.exec_module(module)
     case = module.CASE
     case.name = path.stem
+    case.published = case.published or getattr(module, "published", None)
     return case

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from .case import Case, Finding, observed_order
+from .case import Case, Finding, Results, observed_order
 from .curves import Choice, Cost, Judged, Problem, choices, compared
 from .matrix import Row
 
@@ -37,6 +37,20 @@ FINDINGS = (
     "| finding | at | value | expected | bounds | why | passed |",
     "|---|---|--:|--:|--:|--:|--:|",
 )
+#: Head of the table of published values.
+PUBLISHED = "Against published values"
+PUBLISHED_COLUMNS = [
+    "case",
+    "TYPE",
+    "method",
+    "quantity",
+    "published (source)",
+    "ours",
+    "difference",
+    "cells",
+    "points",
+    "processor time [s]",
+]
 Record = dict[str, Any]
 
 
@@ -72,13 +86,52 @@ def family_page(
     for name in names:
         title = heading(cases[name])
         lines.append(f"- [{title}](#{slug(title)})")
+    compared_values = published_section(cases, judged)
+    if compared_values:
+        lines.insert(4, f"- [{PUBLISHED}](#{slug(PUBLISHED)})")
     speed = speed_section(problems, figures)
     if speed:
         lines.append("- [Error against resolution and cost](#error-against-resolution-and-cost)")
-    lines.append("")
+    lines += ["", *compared_values]
     for name in names:
         lines += case_section(cases[name], [item for item in judged if item[0].case == name])
     return [*lines, *speed] if speed else lines[:-1]
+
+
+def published_section(cases: Mapping[str, Case], judged: Sequence[Judged]) -> list[str]:
+    """Return the table of published values beside ours; nothing when no case has any."""
+    lines = []
+    for row, records, _ in judged:
+        case = cases[row.case]
+        if case.published is None or any(record["problem"] for record in records):
+            continue
+        # A report holds None for what is not finite.
+        measures = [
+            {key: math.nan if value is None else value for key, value in record["measures"].items()}
+            for record in records
+        ]
+        runs = {p.cells: p for p in row.runs(quick=False)}
+        results = Results([runs[record["cells"]] for record in records], measures)
+        sim_type, _, method = row.label.partition(", ")[2].partition(", ")
+        for item in case.published(results):
+            record = records[item.run]
+            title = heading(case)
+            cells = [f"[{text_cell(case.title)}](#{slug(title)})", sim_type.removeprefix("TYPE ")]
+            cells += [text_cell(method), text_cell(item.quantity)]
+            cells.append(text_cell(f"{number(item.value)} ({item.source})"))
+            cells += [number(item.ours), signed_percent(item.difference), str(record["cells"])]
+            cells.append(str(record.get("points", NONE)))
+            cells.append(number(record.get("loop_seconds", record.get("seconds")), 3))
+            lines.append(table_row(cells))
+    if not lines:
+        return []
+    about = (
+        "Difference: ours less the published value, over the published value. Cells, points and"
+        " processor time (one thread) are those of the run that gave ours: the finest of its row,"
+        " if a case does not say otherwise. Sources stand with the cases."
+    )
+    head = table_head(PUBLISHED_COLUMNS, left=5)
+    return [f"## {PUBLISHED}", "", about, "", *head, *lines, ""]
 
 
 def heading(case: Case) -> str:
@@ -396,6 +449,11 @@ def number(value: float | None, digits: int = 4) -> str:
 def percent(part: float) -> str:
     """Return a part in per cent."""
     return f"{number(100.0 * part, 2 if part < 0.995 else 3)} %"
+
+
+def signed_percent(part: float) -> str:
+    """Return a difference in per cent, with its sign."""
+    return NONE if math.isnan(part) else f"{'+' * (part >= 0.0)}{percent(part)}"
 
 
 def text_line(text: str, most: int = 600) -> str:
