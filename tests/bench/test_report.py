@@ -54,7 +54,7 @@ def test_targets_scale_with_the_kernel() -> None:
     reference = {"kernel_ns": 120.0, "triad_gb_per_s": 16.0, "bytes_per_point": 320.0}
     reference |= {"p2g_ns": 50.0, "nodes_ns": 10.0, "g2p_ns": 60.0}
     rows = [row("3d-linear", 1, 60.0), row("3d-linear", 2, 30.0), row("plane-contact", 1, 30.0)]
-    head, _, *lines = targets(rows, reference)
+    head, _, _, *lines = targets(rows, reference)
     assert "320 bytes take 20.0 ns" in head
     assert [text.split() for text in lines] == [["3d-linear", "60.0", "60", "120", "0.50", "3.0"]]
 
