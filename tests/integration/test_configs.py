@@ -103,7 +103,7 @@ def test_scene(mpm3d: Run, copy: Path, scene: str) -> None:
 
 def time_of(report: str, name: str) -> float:
     """Return the start time (t) or the time step (dt) that a report tells of."""
-    match = re.search(rf"\b{name} = (\S+)", report)
+    match = re.search(rf"\b{name} (?:=|at most) (\S+)", report)
     assert match, report
     return float(match[1])
 
