@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Makes beam.points beside this script. PYTHON names the interpreter (default python3).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+root="$(cd ../.. && pwd)"
+export PYTHONPATH="$root/mpm_pygen/src${PYTHONPATH:+:$PYTHONPATH}"
+pygen() { "${PYTHON:-python3}" -m mpm_pygen "$@"; }
+
+# A beam at the wall x = 0, 0.4 m long and 0.1 m high. Cells of 0.025 m with 2 points a direction.
+pygen block --type 2 --min 0 0.1 --max 0.4 0.2 --spacing 0.0125 --density 1000 -o beam.points
