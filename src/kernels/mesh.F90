@@ -13,7 +13,7 @@ module mpm_mesh
   use mpm_kinds, only: lp, wp
   implicit none
   private
-  public :: mesh_t, off_edge
+  public :: few, mesh_t, off_edge
 
   !> Largest ratio of an edge to the least height of its cell.
   real(wp), parameter :: flattest = 1.0e4_wp

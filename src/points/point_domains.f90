@@ -55,7 +55,7 @@ module mpm_point_domains
     type(node_list_t) :: list
     !> Window of the node arrays, as of the lists.
     type(window_t) :: window
-    !> Cells of a mesh in which the corners of the points' boxes were, as a guess. (2**dim, n)
+    !> Cells of a mesh in which the corners of the points' boxes were, as a guess. (2**dim, any)
     integer, allocatable :: corner_cell(:, :)
     !> First nodes of the boxes of nodes of the points, not brought back at seams. (3, n)
     integer, allocatable, private :: first(:, :)
@@ -208,6 +208,9 @@ contains
     if (allocated(self%stretch)) self%stretch = self%stretch(:, order)
     if (allocated(self%corner)) self%corner = self%corner(:, order)
     if (allocated(self%content)) self%content = self%content(order)
+    if (.not. allocated(self%corner_cell)) return
+    ! Some of the points may never have been inside the mesh.
+    if (size(self%corner_cell, 2) == size(order)) self%corner_cell = self%corner_cell(:, order)
   end subroutine point_domains_permute
 
   !> Corners of a domain, from the position of the point, x fastest.
