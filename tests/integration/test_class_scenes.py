@@ -98,6 +98,7 @@ def test_driven_cavity(mpm3d: Run, tmp_path: Path) -> None:
     assert abs(stream[-1]) < 0.25 / cells
 
 
+@pytest.mark.slow
 def test_standing_wave(mpm3d: Run, tmp_path: Path) -> None:
     """The wave swings with the period of gravity waves."""
     folder, _ = run_config(mpm3d, "standing_wave", tmp_path)
