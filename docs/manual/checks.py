@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from figures import figure_text
+from figures import FIGURES, figure_text
 
 ROOT = Path(__file__).resolve().parents[2]
 #: From a page of the class reference to the root of the project.
@@ -14,6 +14,8 @@ TEST = re.compile(r"@test\b.*\n\s*subroutine test_(\w+)")
 CASE = re.compile(r"^## (.*?) ?\((\w+)\)$", re.MULTILINE)
 #: Classes that many cases use are not listed case by case.
 MANY = 8
+#: A class in no more scenes than that shows the picture of the first one, if it has no figure.
+FEW = 3
 
 
 def words(path: Path) -> set[str]:
@@ -67,27 +69,39 @@ def verification(name: str) -> str:
     return f"Verification: {', '.join(found)}." if found else ""
 
 
-def scenes(name: str) -> str:
-    """Return the line on the scenes with a class, if there are any."""
+def scenes(name: str) -> list[str]:
+    """Return the names of the scenes with a class."""
     pattern = re.compile(rf'"{name}"')
     found = sorted(
         path.parent.name
         for path in (ROOT / "configs").glob("*/*")
         if path.suffix in (".cfg", ".parts") and pattern.search(path.read_text("utf-8"))
     )
-    links = [f"[{scene}]({UP}/configs/{scene}/README.md)" for scene in dict.fromkeys(found)]
-    return f"Scenes, with pictures: {', '.join(links)}." if links else ""
+    return list(dict.fromkeys(found))
+
+
+def picture(scene: str) -> str:
+    """Return the picture of a scene, with the words of its README."""
+    readme = (ROOT / "configs" / scene / "README.md").read_text("utf-8")
+    (words,) = re.findall(rf"^!\[(.*)\]\(.*/{scene}\.png\)$", readme, re.MULTILINE)
+    place = f"../../images/{scene}.png"
+    return f"![{words}]({place})\n\n*Scene [{scene}]({UP}/configs/{scene}/README.md): {words}.*\n"
 
 
 def checks_text(name: str, folder: str, stem: str) -> str:
     """Return the section of a page on the checks of a class."""
     lines = ["## Checks", "", *figure_text(name, cases())]
+    found = scenes(name)
+    if found and len(found) <= FEW and name not in FIGURES:
+        lines.append(picture(found[0]))
     for path in unit_tests(folder, stem):
         place = f"{UP}/{path.relative_to(ROOT)}"
         tests = TEST.findall(path.read_text("utf-8"))
         told = "; ".join(test.replace("_", " ") for test in tests)
         lines.append(f"- [Unit tests]({place}): {told}.")
-    for line in (verification(name), scenes(name)):
+    links = [f"[{scene}]({UP}/configs/{scene}/README.md)" for scene in found]
+    shown = f"Scenes, with pictures: {', '.join(links)}." if links else ""
+    for line in (verification(name), shown):
         if line:
             lines.append(f"- {line}")
     # Parts are gone when a run begins, and have nothing to save.
