@@ -132,6 +132,7 @@ contains
     else
       call role_names(roles)
     end if
+    rest = ''
     do i = 1, size(roles)
       call describe_classes(roles(i)%text, descriptions, error)
       if (allocated(error)) then
