@@ -240,7 +240,7 @@ I = I_0\,\frac{\tan\theta - \mu_s}{\mu_2 - \tan\theta},$$
 the profile of Bagnold; its mean is 3/5 of its surface velocity. $H = 10\,d$, $\phi = 0.6$,
 $\mu_s = 0.3819$, $\mu_2 = 0.6435$, $I_0 = 0.279$ (glass beads). The sand is softer than grains
 are: $M = 1000\,\rho g H$ or `stiffness` times that weight, so that elastic strains are below 0.001
-and waves 50 times as fast as the flow or more.
+and waves 30 times as fast as the flow or more.
 
 The bed starts with the pressure of rest and `start` times the exact velocity, 1 unless told, and
 runs for 5 (or `times`) times $H^{3/2}/(1.96\,K)$, $K = d\,\mu'(I)\sqrt{g\cos\theta/\phi}$, in
@@ -254,7 +254,7 @@ Expected with linear functions: the points of a cell share strains, so that it h
 and one pressure (at its density the bed opens in the first motion, and gets its pressure anew).
 The **discrete steady state** is then Bagnold's shear rate in the middle of each cell, and the
 program must find it to the elastic strain at the floor. The elastic stress turns with the spin,
-which makes $p$ less than the weight by $\tau^2/G$ and the flow faster, by 0.6 % at
+which makes $p$ less than the weight by $\tau^2/G$ and the flow faster, by 0.4 % at
 $M = 1000\,\rho gH$; with `stiffness=10000`, where this is small, the distance to the exact flow
 must fall with order 1.5 (next to the surface) to 2.
 """,
