@@ -358,15 +358,17 @@ contains
     type(property_t), intent(in) :: property
     !> For example `above 0, at most 1`.
     character(:), allocatable :: text
+    real(wp) :: largest
     logical :: has_lower
 
     text = ''
-    has_lower = property%lower > -real(huge(1), wp)
+    largest = merge(real(huge(1), wp), huge(1.0_wp), property%kind == kind_integer)
+    has_lower = property%lower > -largest
     if (has_lower) then
       text = merge('above   ', 'at least', property%above)
       text = trim(text)//' '//to_text(property%lower)
     end if
-    if (property%upper < real(huge(1), wp)) then
+    if (property%upper < largest) then
       if (has_lower) text = text//', '
       text = text//trim(merge('below  ', 'at most', property%below))//' '//to_text(property%upper)
     end if

@@ -68,12 +68,14 @@ contains
     !> The normals. (nvel, nn)
     real(wp), intent(out) :: normal(:, :)
     real(wp), allocatable :: other(:, :)
-    integer :: nn
+    integer :: nn, crew
 
     nn = size(normal, 2)
+    crew = useful_threads(threads, 64*nn)
     allocate (other(size(normal, 1), nn))
-    !$omp parallel sections default(none) num_threads(useful_threads(threads, 64*nn)) &
-    !$omp shared(window, first, second, h, normal, other)
+    ! LLVM 19 wants what num_threads uses to be shared, and that said before.
+    !$omp parallel sections default(none) shared(window, first, second, h, normal, other, crew) &
+    !$omp num_threads(crew)
     !$omp section
     call body_normals(first, window, h, edges_level, normal)
     !$omp section

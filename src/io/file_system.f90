@@ -22,6 +22,9 @@ module mpm_file_system
     integer(c_size_t) :: rest(16) = 0
   end type glob_result_t
 
+  !> Not as a literal: LLVM's preprocessor doubles it there.
+  character(1), parameter :: backslash = achar(92)
+
   interface
     !> C `fopen`: open a file, or for reading a folder.
     function c_fopen(path, mode) bind(c, name='fopen') result(stream)
@@ -366,7 +369,7 @@ contains
 
     pattern = ''
     do i = 1, len_trim(text)
-      if (scan(text(i:i), '*?[\') > 0) pattern = pattern//'\'
+      if (scan(text(i:i), '*?['//backslash) > 0) pattern = pattern//backslash
       pattern = pattern//text(i:i)
     end do
   end function quoted

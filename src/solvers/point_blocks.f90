@@ -126,14 +126,15 @@ contains
     !> Number of threads.
     integer, intent(in) :: threads
     real(wp) :: velocity(3*block_size), gain(3*block_size), gradient(9*block_size)
+    type(sweep_t) :: sweep
     integer :: a, b
 
+    sweep%kick = .false.
     !$omp parallel do default(none) schedule(static) private(b, velocity, gain, gradient) &
-    !$omp num_threads(useful_threads(threads, points%n_inside)) shared(points, nodes)
+    !$omp num_threads(useful_threads(threads, points%n_inside)) shared(points, nodes, sweep)
     do a = 1, points%n_inside, block_size
       b = min(a + block_size - 1, points%n_inside)
-      call interpolate(points, nodes, points%stencil, sweep_t(kick=.false.), a, b, velocity, gain, &
-                       gradient)
+      call interpolate(points, nodes, points%stencil, sweep, a, b, velocity, gain, gradient)
       call fit_velocities(points, nodes, points%stencil, a, b, gradient)
     end do
     !$omp end parallel do
