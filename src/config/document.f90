@@ -197,7 +197,8 @@ contains
 
     n_kept = min(n, size(values))
     allocate (other(n))
-    other(:n_kept) = values(:n_kept)
+    ! LLVM 19 never ends the assignment of none.
+    if (n_kept > 0) other(:n_kept) = values(:n_kept)
     call move_alloc(other, values)
   end subroutine resize_values
 
@@ -212,7 +213,8 @@ contains
 
     n_kept = min(n, size(entries))
     allocate (other(n))
-    other(:n_kept) = entries(:n_kept)
+    ! LLVM 19 never ends the assignment of none.
+    if (n_kept > 0) other(:n_kept) = entries(:n_kept)
     call move_alloc(other, entries)
   end subroutine resize_entries
 
@@ -227,7 +229,8 @@ contains
 
     n_kept = min(n, size(sections))
     allocate (other(n))
-    other(:n_kept) = sections(:n_kept)
+    ! LLVM 19 never ends the assignment of none.
+    if (n_kept > 0) other(:n_kept) = sections(:n_kept)
     call move_alloc(other, sections)
   end subroutine resize_sections
 
