@@ -23,9 +23,12 @@ PAGE = Path(__file__).parents[1] / "docs" / "performance.md"
 SPARSE = 262_144
 #: Rows of the suite beside every scene on one thread: scene, points, threads.
 MORE = (
+    ("1d-linear", 250_000, 2),
     ("plane-linear", 250_000, 2),
     ("3d-linear", 250_000, 2),
     ("3d-cpdi", 250_000, 2),
+    ("3d-quadratic", 250_000, 2),
+    ("3d-cubic", 250_000, 2),
     ("3d-contact", 250_000, 2),
     ("3d-linear", 10_000, 1),
     ("3d-linear", 100_000, 1),
