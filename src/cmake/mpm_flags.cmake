@@ -22,8 +22,10 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
     target_link_options(mpm_flags INTERFACE -fsanitize=address,undefined)
   endif()
 else()
-  message(WARNING "mpm3d is tested with gfortran only; "
-    "with ${CMAKE_Fortran_COMPILER_ID} CMake's default flags are used")
+  if(NOT CMAKE_Fortran_COMPILER_ID STREQUAL "LLVMFlang")
+    message(WARNING "mpm3d is tested with gfortran, and its unit tests with LLVM's flang; "
+      "with ${CMAKE_Fortran_COMPILER_ID} CMake's default flags are used")
+  endif()
   set(release_flags "")
   set(debug_flags "")
 endif()
