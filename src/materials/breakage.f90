@@ -467,7 +467,11 @@ contains
       if (abs(level%y) <= tolerance) exit
       call search%take(level%y)
     end do
-    found = level%y <= tolerance
+    if (level%y > tolerance) then
+      ! Strains near nothing have too few digits for the tolerance: the end that does not yield.
+      next = moved(state, rates, direction, search%b)
+      call find_level(self, next, rr, level, t)
+    end if
   end subroutine follow_bracket
 
   !> Direction of flow of the elastic strain, and how far it may be followed.
