@@ -22,6 +22,8 @@ module mpm_breakage
   real(wp), parameter :: largest_change = 0.02_wp
   !> Elastic strain, over that of the trial state, that counts as none.
   real(wp), parameter :: vanished = 1.0e-8_wp
+  !> Size of the shear part of Be, which is near 1, that is lost in rounding.
+  real(wp), parameter :: unresolved = 4.0_wp*epsilon(1.0_wp)
   !> Directions of flow until a step counts as failed.
   integer, parameter :: patience = 2000
 
@@ -356,7 +358,7 @@ contains
     logical, intent(out) :: good
     type(breakage_state_t) :: next
     type(level_t) :: level
-    real(wp) :: rates(3), direction(6), far, start, six(6)
+    real(wp) :: rates(3), direction(6), far, start, six(6), mean, sheared
     logical :: found
     integer :: i
 
@@ -371,6 +373,13 @@ contains
         state%be = identity
         t = 0.0_wp
         return
+      end if
+      mean = (state%be(1, 1) + state%be(2, 2) + state%be(3, 3))/3.0_wp
+      sheared = norm2(state%be - mean*identity)
+      if (sheared > 0.0_wp .and. sheared <= unresolved) then
+        ! Hardly any pressure: one unit in the last place of shear is more than it bears.
+        state%be = mean*identity
+        cycle
       end if
       call find_rates(self, level, rates)
       call direct(state, rates, six, level%q, direction, far)
