@@ -255,6 +255,9 @@ contains
         if (allocated(body%points%gradient) .and. .not. allocated(points%gradient)) then
           allocate (points%gradient(points%kin%ngrad, points%n), source=0.0_wp)
         end if
+        if (allocated(body%points%shear_rate) .and. .not. allocated(points%shear_rate)) then
+          allocate (points%shear_rate(points%n), source=0.0_wp)
+        end if
         call move_alloc(points, body%points)
         body%active = self%start(i)%active
       end associate

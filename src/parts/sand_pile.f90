@@ -19,10 +19,13 @@ module mpm_sand_pile
     real(wp) :: peak(3) = 0.0_wp
     !> Slope of the sides.
     real(wp) :: mu = 0.0_wp
+    !> Direction of the height.
+    integer :: up = 3
   contains
     procedure, nopass :: describe => sand_pile_describe
     procedure :: init => sand_pile_init
     procedure :: contains => sand_pile_contains
+    procedure :: bounds => sand_pile_bounds
   end type sand_pile_t
 
 contains
@@ -66,6 +69,7 @@ contains
       self%peak(d) = properties%real('peak_'//axes(d))
     end do
     self%mu = properties%real('mu')
+    self%up = kin%dim
   end subroutine sand_pile_init
 
   !> Whether a position is below the sides of the pile.
@@ -81,5 +85,19 @@ contains
     up = size(x)
     inside = x(up) - self%peak(up) < -self%mu*norm2(x(:up - 1) - self%peak(:up - 1))
   end function sand_pile_contains
+
+  !> All that is not above the peak.
+  pure subroutine sand_pile_bounds(self, lower, upper)
+    !> The part.
+    class(sand_pile_t), intent(in) :: self
+    !> Lower corner. [m]
+    real(wp), intent(out) :: lower(3)
+    !> Upper corner. [m]
+    real(wp), intent(out) :: upper(3)
+
+    lower = -huge(1.0_wp)
+    upper = huge(1.0_wp)
+    upper(self%up) = self%peak(self%up)
+  end subroutine sand_pile_bounds
 
 end module mpm_sand_pile

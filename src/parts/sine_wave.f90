@@ -25,6 +25,7 @@ module mpm_sine_wave
     procedure, nopass :: describe => sine_wave_describe
     procedure :: init => sine_wave_init
     procedure :: contains => sine_wave_contains
+    procedure :: bounds => sine_wave_bounds
   end type sine_wave_t
 
 contains
@@ -83,5 +84,20 @@ contains
     inside = x(2) - self%origin(2) <= &
              self%amplitude*sin(two_pi*((x(1) - self%origin(1))/self%wavelength))
   end function sine_wave_contains
+
+  !> All that is not above the crests.
+  pure subroutine sine_wave_bounds(self, lower, upper)
+    !> The part.
+    class(sine_wave_t), intent(in) :: self
+    !> Lower corner. [m]
+    real(wp), intent(out) :: lower(3)
+    !> Upper corner. [m]
+    real(wp), intent(out) :: upper(3)
+
+    lower = -huge(1.0_wp)
+    upper = huge(1.0_wp)
+    ! Halves, whose sum can't overflow.
+    upper(2) = 2.0_wp*min(0.5_wp*huge(1.0_wp), 0.5_wp*self%origin(2) + 0.5_wp*abs(self%amplitude))
+  end subroutine sine_wave_bounds
 
 end module mpm_sine_wave

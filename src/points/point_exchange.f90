@@ -118,6 +118,7 @@ contains
     points%stress(:, slot) = 0.0_wp
     if (allocated(points%load)) points%load(:, slot) = 0.0_wp
     if (allocated(points%gradient)) points%gradient(:, slot) = 0.0_wp
+    if (allocated(points%shear_rate)) points%shear_rate(slot) = 0.0_wp
     if (allocated(points%affine)) points%affine(:, slot) = 0.0_wp
     if (allocated(points%reference_volume)) points%reference_volume(slot) = 0.0_wp
     if (allocated(points%smoothed_volume)) points%smoothed_volume(slot) = 0.0_wp
@@ -226,6 +227,7 @@ contains
     fields = [points%displacement(:, slot), points%stress(:, slot)]
     if (allocated(points%load)) fields = [fields, points%load(:, slot)]
     if (allocated(points%gradient)) fields = [fields, points%gradient(:, slot)]
+    if (allocated(points%shear_rate)) fields = [fields, points%shear_rate(slot)]
     if (allocated(points%affine)) fields = [fields, points%affine(:, slot)]
   end subroutine gather
 
@@ -288,6 +290,7 @@ contains
     call take(points%stress(:, slot), fields, k)
     if (allocated(points%load)) call take(points%load(:, slot), fields, k)
     if (allocated(points%gradient)) call take(points%gradient(:, slot), fields, k)
+    if (allocated(points%shear_rate)) call take(points%shear_rate(slot:slot), fields, k)
     if (allocated(points%affine)) call take(points%affine(:, slot), fields, k)
   end subroutine field_means_give
 

@@ -99,12 +99,16 @@ contains
     integer :: n, p
 
     n = points%n_inside
-    if (.not. allocated(points%domains) .and. present(affine)) then
+    ! gfortran reads the first element of an array that is not there when it passes it on.
+    if (.not. allocated(points%domains) .and. present(affine) .and. present(velocity)) then
       call add_momentum(points%kin, points%stencil, window, useful_threads(threads, n), n, &
                         points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
                         points%extent(:n), points%mass(:n), node_momentum, velocity, affine)
+    else if (.not. allocated(points%domains) .and. present(affine)) then
+      call add_momentum(points%kin, points%stencil, window, useful_threads(threads, n), n, &
+                        points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
+                        points%extent(:n), points%mass(:n), node_momentum, affine=affine)
     else if (.not. allocated(points%domains)) then
-      ! gfortran reads the first element of an array that is not there when it passes it on.
       call add_momentum(points%kin, points%stencil, window, useful_threads(threads, n), n, &
                         points%order(:n), points%row_offset, points%key(:n), points%x(:, :n), &
                         points%extent(:n), points%mass(:n), node_momentum, velocity)

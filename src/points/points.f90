@@ -82,6 +82,9 @@ module mpm_points
     real(wp), allocatable :: history(:, :)
     !> Velocity gradient of the last step that was asked to keep it; 0 before. [1/s] (ngrad, n)
     real(wp), allocatable :: gradient(:, :)
+    !> Shear rate sqrt(2 D':D') of the last step that was asked to keep it, where frames need no more
+    !> than that; 0 before. [1/s] (n)
+    real(wp), allocatable :: shear_rate(:)
     !> Acceleration by the body force, the same for all points. [m/s2]
     real(wp) :: body_force(3) = 0.0_wp
     !> Acceleration by a body force that differs from point to point; not allocated when there is
@@ -369,6 +372,7 @@ contains
     call permute_vectors(order, team, self%stress)
     if (size(self%history, 1) > 0) call permute_vectors(order, team, self%history)
     if (allocated(self%gradient)) call permute_vectors(order, team, self%gradient)
+    if (allocated(self%shear_rate)) call permute_scalars(order, team, self%shear_rate)
     if (allocated(self%load)) call permute_vectors(order, team, self%load)
     if (allocated(self%affine)) call permute_vectors(order, team, self%affine)
     if (allocated(self%reference_volume)) call permute_scalars(order, team, self%reference_volume)
@@ -498,6 +502,7 @@ contains
             + size(self%velocity, kind=lp) + size(self%stress, kind=lp) &
             + size(self%history, kind=lp)
     if (allocated(self%gradient)) reals = reals + size(self%gradient, kind=lp)
+    if (allocated(self%shear_rate)) reals = reals + size(self%shear_rate, kind=lp)
     if (allocated(self%load)) reals = reals + size(self%load, kind=lp)
     if (allocated(self%affine)) reals = reals + size(self%affine, kind=lp)
     if (allocated(self%reference_volume)) reals = reals + size(self%reference_volume, kind=lp)
@@ -615,6 +620,7 @@ contains
     call store%put('stress', self%stress)
     if (size(self%history, 1) > 0) call store%put('history', self%history)
     if (allocated(self%gradient)) call store%put('gradient', self%gradient)
+    if (allocated(self%shear_rate)) call store%put('shear_rate', self%shear_rate)
     if (allocated(self%load)) call store%put('load', self%load)
     if (allocated(self%affine)) call store%put('affine', self%affine)
     if (allocated(self%reference_volume)) then
@@ -675,6 +681,7 @@ contains
     call store%get('stress', self%stress)
     if (size(self%history, 1) > 0) call store%get('history', self%history)
     if (store%has('gradient')) call store%get('gradient', self%gradient)
+    if (store%has('shear_rate')) call store%get('shear_rate', self%shear_rate)
     if (store%has('load')) call store%get('load', self%load)
     if (store%has('affine')) call store%get('affine', self%affine)
     if (store%has('reference_volume')) then

@@ -5,8 +5,9 @@ module mpm_minimal_vtk
   use mpm_field_writer, only: field_writer_t
   use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
-  use mpm_kinematics, only: expand_gradient, expand_stress, kinematics_t
+  use mpm_kinematics, only: expand_stress
   use mpm_model, only: model_t
+  use mpm_points, only: points_t
   use mpm_vtk_frames, only: add_vtk_properties, vtk_frames_t
   use mpm_window, only: window_t
   implicit none
@@ -17,6 +18,7 @@ module mpm_minimal_vtk
   type, extends(vtk_frames_t) :: minimal_vtk_t
   contains
     procedure, nopass :: describe => minimal_vtk_describe
+    procedure :: ask => minimal_vtk_ask
     procedure :: send_point_fields => minimal_vtk_send_point_fields
     procedure :: send_node_fields => minimal_vtk_send_node_fields
   end type minimal_vtk_t
@@ -45,6 +47,18 @@ contains
                               &V_i is an area of the meridian plane.')
   end subroutine minimal_vtk_describe
 
+  !> Ask points to keep their shear rates in steps that end with a frame.
+  subroutine minimal_vtk_ask(self, points)
+    !> The serializer.
+    class(minimal_vtk_t), intent(in) :: self
+    !> The points.
+    class(points_t), intent(inout) :: points
+
+    associate (unused => self)
+    end associate
+    if (.not. allocated(points%shear_rate)) allocate (points%shear_rate(points%n), source=0.0_wp)
+  end subroutine minimal_vtk_ask
+
   !> Send velocity, displacement, pressure, tau_bar, gamma_dot and density.
   subroutine minimal_vtk_send_point_fields(self, body, writer)
     !> The serializer.
@@ -71,11 +85,7 @@ contains
       end do
       call writer%scalar('tau_bar', values)
       values = 0.0_wp
-      if (allocated(points%gradient)) then
-        do p = 1, points%n
-          values(p) = shear_rate(points%kin, points%gradient(:, p))
-        end do
-      end if
+      if (allocated(points%shear_rate)) values = points%shear_rate
       call writer%scalar('gamma_dot', values)
       values = 0.0_wp
       ! Points in reserve have neither.
@@ -133,20 +143,6 @@ contains
       end do
     end do
   end subroutine node_density
-
-  !> Rate of shear, sqrt(2) |sym L - (tr L/3) I|.
-  pure function shear_rate(kin, gradient) result(rate)
-    !> Component counts.
-    type(kinematics_t), intent(in) :: kin
-    !> Stored velocity gradient components. [1/s] (ngrad)
-    real(wp), intent(in) :: gradient(:)
-    !> Rate of shear. [1/s]
-    real(wp) :: rate
-    real(wp) :: l(3, 3)
-
-    l = expand_gradient(kin, gradient)
-    rate = sqrt(2.0_wp)*norm2(deviator(0.5_wp*(l + transpose(l))))
-  end function shear_rate
 
   !> A tensor less a third of its trace on the diagonal.
   pure function deviator(tensor) result(rest)

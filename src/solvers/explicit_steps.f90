@@ -2,6 +2,7 @@
 module mpm_explicit_steps
   use mpm_advance, only: advance_points, turn_stress
   use mpm_body, only: body_t
+  use mpm_corotation, only: shear_rates
   use mpm_errors, only: err_simulation, error_t, raise
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
@@ -470,7 +471,12 @@ contains
         call points%domains%fit_volumes(kin, a, n, points%x(:, a:b), points%volume(a:b), slot)
       end if
       if (keep_gradient .and. strain) then
-        points%gradient(:, a:b) = reshape(gradient(:kin%ngrad*n), [kin%ngrad, n])
+        if (allocated(points%gradient)) then
+          points%gradient(:, a:b) = reshape(gradient(:kin%ngrad*n), [kin%ngrad, n])
+        end if
+        if (allocated(points%shear_rate)) then
+          call shear_rates(kin, n, gradient, points%shear_rate(a:b))
+        end if
       end if
     end associate
     cause = bad_motion
