@@ -183,7 +183,8 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a pressure; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: rate(self%kin%nstress, n), trace(n), shrunk(n), before, rho, growth, push, p, friction
+    real(wp) :: rate(self%kin%nstress, n), trace(n), shrunk(n), before, rho
+    real(wp) :: growth, push, p, friction
     integer :: i
     logical :: good
 

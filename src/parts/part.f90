@@ -62,9 +62,9 @@ contains
   pure subroutine part_bounds(self, lower, upper)
     !> The part.
     class(part_t), intent(in) :: self
-    !> Lower corner, at or below every position of the part. [m]
+    !> Lower corner, at or below every position of the part without negative coordinates. [m]
     real(wp), intent(out) :: lower(3)
-    !> Upper corner, at or above every position of the part. [m]
+    !> Upper corner, at or above every such position. [m]
     real(wp), intent(out) :: upper(3)
 
     associate (unused => self)

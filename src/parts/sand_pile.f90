@@ -86,7 +86,7 @@ contains
     inside = x(up) - self%peak(up) < -self%mu*norm2(x(:up - 1) - self%peak(:up - 1))
   end function sand_pile_contains
 
-  !> All that is not above the peak.
+  !> The box above height 0, where lattices begin, and below the peak.
   pure subroutine sand_pile_bounds(self, lower, upper)
     !> The part.
     class(sand_pile_t), intent(in) :: self
@@ -95,9 +95,16 @@ contains
     !> Upper corner. [m]
     real(wp), intent(out) :: upper(3)
 
-    lower = -huge(1.0_wp)
-    upper = huge(1.0_wp)
-    upper(self%up) = self%peak(self%up)
+    real(wp) :: height, half
+
+    height = max(0.0_wp, self%peak(self%up))
+    half = huge(1.0_wp)
+    if (height/half < self%mu) half = height/self%mu
+    ! Halves, whose sums can't overflow.
+    lower = 2.0_wp*max(-0.5_wp*huge(1.0_wp), 0.5_wp*self%peak - 0.5_wp*half)
+    upper = 2.0_wp*min(0.5_wp*huge(1.0_wp), 0.5_wp*self%peak + 0.5_wp*half)
+    lower(self%up) = 0.0_wp
+    upper(self%up) = height
   end subroutine sand_pile_bounds
 
 end module mpm_sand_pile

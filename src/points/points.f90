@@ -82,8 +82,8 @@ module mpm_points
     real(wp), allocatable :: history(:, :)
     !> Velocity gradient of the last step that was asked to keep it; 0 before. [1/s] (ngrad, n)
     real(wp), allocatable :: gradient(:, :)
-    !> Shear rate sqrt(2 D':D') of the last step that was asked to keep it, where frames need no more
-    !> than that; 0 before. [1/s] (n)
+    !> Shear rate sqrt(2 D':D') of the last step that was asked to keep it, for frames that need no
+    !> more than that; 0 before. [1/s] (n)
     real(wp), allocatable :: shear_rate(:)
     !> Acceleration by the body force, the same for all points. [m/s2]
     real(wp) :: body_force(3) = 0.0_wp
