@@ -20,10 +20,17 @@ module mpm_number_text
   !> Most digits that are right after scaling in working precision.
   integer, parameter :: max_fast_digits = 15
   !> Powers of ten as integers.
-  integer(lp), parameter :: integer_power(0:17) = &
+  integer(lp), parameter :: integer_power(0:18) = &
     [1_lp, 10_lp, 100_lp, 1000_lp, 10000_lp, 100000_lp, 1000000_lp, 10000000_lp, 100000000_lp, &
      1000000000_lp, 10000000000_lp, 100000000000_lp, 1000000000000_lp, 10000000000000_lp, &
-     100000000000000_lp, 1000000000000000_lp, 10000000000000000_lp, 100000000000000000_lp]
+     100000000000000_lp, 1000000000000000_lp, 10000000000000000_lp, 100000000000000000_lp, &
+     1000000000000000000_lp]
+
+  !> All pairs of digits, 00 to 99.
+  character(*), parameter :: pairs = &
+    '00010203040506070809101112131415161718192021222324252627282930313233343536373839&
+    &40414243444546474849505152535455565758596061626364656667686970717273747576777879&
+    &8081828384858687888990919293949596979899'
 
   !> An integer at the end of a text.
   interface append_integer
@@ -107,7 +114,7 @@ contains
     integer, intent(out) :: power
 
     ! log10(2) = 78913/2**18 is near enough to be wrong by one at most, which is mended below
-    power = shifta((exponent(number) - 1)*78913, 18)
+    power = shifta(binary_exponent(number)*78913, 18)
     mantissa = int(scaled(number, n - 1 - power) + 0.5_wp, lp)
     if (mantissa >= integer_power(n)) then
       power = power + 1
@@ -122,6 +129,16 @@ contains
       mantissa = integer_power(n - 1)
     end if
   end subroutine scale_to_integer
+
+  !> Power of two of the first binary digit of a number: `exponent(number) - 1` without a call.
+  pure function binary_exponent(number) result(power)
+    !> The number, positive; below the smallest normal number the power is too small.
+    real(wp), intent(in) :: number
+    !> The power.
+    integer :: power
+
+    power = int(shiftr(transfer(number, 0_lp), 52)) - 1023
+  end function binary_exponent
 
   !> A number times a power of ten, with one rounding for each 22 places.
   pure function scaled(number, places) result(product)
@@ -169,7 +186,7 @@ contains
 
     certain = .false.
     mantissa = 0
-    power = shifta((exponent(number) - 1)*78913, 18)
+    power = shifta(binary_exponent(number)*78913, 18)
     do attempt = 1, 2
       places = n - 1 - power
       if (places < 0 .or. places > 44) return
@@ -235,6 +252,7 @@ contains
     !> Number of digits.
     integer, intent(inout) :: n
 
+    if (mod(mantissa, 10_lp) /= 0) return
     do while (n > 8)
       if (mod(mantissa, 100000000_lp) /= 0) exit
       mantissa = mantissa/100000000_lp
@@ -259,25 +277,26 @@ contains
     integer, intent(in) :: n
     !> Power of ten of the first digit, -4 to 9.
     integer, intent(in) :: power
-    integer :: n_zeros
+    integer :: n_zeros, i
 
+    ! Pieces of fixed length, longer than needed: what is too much is written over.
     if (power < 0) then
-      n_zeros = -power - 1
-      buffer(length + 1:length + 2 + n_zeros) = '0.000'
-      length = length + 2 + n_zeros
-      call put_digits(buffer(length + 1:length + n), mantissa)
-      length = length + n
+      buffer(length + 1:length + 5) = '0.000'
+      length = length + 1 - power
+      call put_digits(buffer, length, mantissa, n)
     else if (n <= power + 1) then
+      call put_digits(buffer, length, mantissa, n)
       n_zeros = power + 1 - n
-      call put_digits(buffer(length + 1:length + n), mantissa)
-      buffer(length + n + 1:length + n + n_zeros) = '0000000000'
-      length = length + n + n_zeros
+      buffer(length + 1:length + 9) = '000000000'
+      length = length + n_zeros
     else
       ! all digits one place too far to the right, then the whole part moves over
-      call put_digits(buffer(length + 2:length + n + 1), mantissa)
-      buffer(length + 1:length + power + 1) = buffer(length + 2:length + power + 2)
-      buffer(length + power + 2:length + power + 2) = '.'
-      length = length + n + 1
+      length = length + 1
+      call put_digits(buffer, length, mantissa, n)
+      do i = length - n, length - n + power
+        buffer(i:i) = buffer(i + 1:i + 1)
+      end do
+      buffer(i:i) = '.'
     end if
   end subroutine append_plain
 
@@ -298,8 +317,8 @@ contains
     call append_plain(buffer, length, mantissa, n, 0)
     buffer(length + 1:length + 2) = merge('e-', 'e+', power < 0)
     n_exponent = merge(2, 3, abs(power) < 100)
-    call put_digits(buffer(length + 3:length + 2 + n_exponent), int(abs(power), lp))
-    length = length + 2 + n_exponent
+    length = length + 2
+    call put_digits(buffer, length, int(abs(power), lp), n_exponent)
   end subroutine append_scientific
 
   !> Write what is no number.
@@ -343,7 +362,6 @@ contains
     integer, intent(inout) :: length
     !> The number.
     integer(lp), intent(in) :: number
-    integer(lp) :: rest
     integer :: n
 
     ! the most negative number has no positive counterpart
@@ -357,30 +375,59 @@ contains
       buffer(length:length) = '-'
     end if
     n = 1
-    rest = abs(number)/10
-    do while (rest > 0)
+    do while (abs(number) >= integer_power(n))
       n = n + 1
-      rest = rest/10
+      if (n > ubound(integer_power, 1)) exit
     end do
-    call put_digits(buffer(length + 1:length + n), abs(number))
-    length = length + n
+    call put_digits(buffer, length, abs(number), n)
   end subroutine append_long_integer
 
-  !> Fill a text with the last digits of an integer.
-  pure subroutine put_digits(text, number)
-    !> The text; its length is the number of digits.
-    character(*), intent(inout) :: text
+  !> Write digits of an integer behind the text in a buffer, two at a time.
+  pure subroutine put_digits(buffer, length, number, n)
+    !> The text.
+    character(*), intent(inout) :: buffer
+    !> Characters in use.
+    integer, intent(inout) :: length
     !> The integer, not negative.
     integer(lp), intent(in) :: number
+    !> Number of digits, at least those that the integer has.
+    integer, intent(in) :: n
     integer(lp) :: rest, next
-    integer :: i
+    integer :: last, i, k
 
     rest = number
-    do i = len(text), 1, -1
-      next = rest/10
-      text(i:i) = achar(int(rest - 10*next) + iachar('0'))
+    last = length + n
+    if (n > 8) then
+      ! Two times four digits that do not wait for each other.
+      next = rest/100000000
+      k = int(rest - 100000000*next)
+      call put_four(buffer(last - 7:last - 4), k/10000)
+      call put_four(buffer(last - 3:last), k - 10000*(k/10000))
+      last = last - 8
+      rest = next
+    end if
+    do i = last, length + 2, -2
+      next = rest/100
+      k = 2*int(rest - 100*next)
+      buffer(i - 1:i) = pairs(k + 1:k + 2)
       rest = next
     end do
+    if (mod(n, 2) == 1) buffer(length + 1:length + 1) = achar(int(rest) + iachar('0'))
+    length = length + n
   end subroutine put_digits
+
+  !> Write four digits.
+  pure subroutine put_four(text, number)
+    !> The digits.
+    character(4), intent(out) :: text
+    !> The number, 0 to 9999.
+    integer, intent(in) :: number
+    integer :: high, low
+
+    high = number/100
+    low = number - 100*high
+    text(1:2) = pairs(2*high + 1:2*high + 2)
+    text(3:4) = pairs(2*low + 1:2*low + 2)
+  end subroutine put_four
 
 end module mpm_number_text

@@ -56,6 +56,8 @@ module mpm_text_writer
     procedure :: put_reals
     !> Write reals as 8 bytes each.
     procedure :: put_real_bytes
+    !> Write integers on a line of their own.
+    procedure :: put_integers
     !> Write integers as 4 bytes each.
     procedure :: put_integer_bytes
     !> Write a default or long integer.
@@ -191,6 +193,23 @@ contains
       self%length = self%length + 8*n
     end do
   end subroutine put_real_bytes
+
+  !> Write integers on a line of their own, blanks between them.
+  subroutine put_integers(self, numbers)
+    !> The writer.
+    class(text_writer_t), intent(inout) :: self
+    !> The numbers, at least one.
+    integer, intent(in) :: numbers(:)
+    integer :: i
+
+    do i = 1, size(numbers)
+      call self%make_room(max_number_length + 1)
+      call append_integer(self%buffer, self%length, numbers(i))
+      self%length = self%length + 1
+      self%buffer(self%length:self%length) = ' '
+    end do
+    self%buffer(self%length:self%length) = new_line('a')
+  end subroutine put_integers
 
   !> Write integers as 4 bytes each, the highest first.
   subroutine put_integer_bytes(self, numbers)

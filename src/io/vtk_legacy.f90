@@ -14,6 +14,8 @@ module mpm_vtk_legacy
 
   !> VTK cell type of a single point.
   integer, parameter :: vtk_vertex = 1
+  !> Vertices whose numbers are put as bytes at a time.
+  integer, parameter :: vertices_at_once = 256
   !> Readers take 255 characters of a title or name, and then there may be a number behind it.
   integer, parameter :: max_name_length = 240
 
@@ -130,12 +132,19 @@ contains
     class(vtk_legacy_t), intent(inout) :: self
     !> Number of points.
     integer, intent(in) :: n
-    integer :: i
+    integer :: i, first, last
 
     call self%start_cells(n, 1)
-    do i = 0, n - 1
-      call self%put_cell([i])
-    end do
+    if (self%binary) then
+      do first = 0, n - 1, vertices_at_once
+        last = min(n - 1, first + vertices_at_once - 1)
+        call self%text%put_integer_bytes([(1, i, i=first, last)])
+      end do
+    else
+      do i = 0, n - 1
+        call self%text%put_integers([1, i])
+      end do
+    end if
     call self%put_cell_types(n, vtk_vertex)
   end subroutine put_vertices
 
@@ -157,18 +166,12 @@ contains
     class(vtk_legacy_t), intent(inout) :: self
     !> Its nodes, from 0, in the order of the VTK cell type.
     integer, intent(in) :: nodes(:)
-    integer :: i
 
     if (self%binary) then
       call self%text%put_integer_bytes([size(nodes), nodes])
-      return
+    else
+      call self%text%put_integers([size(nodes), nodes])
     end if
-    call self%text%put_integer(size(nodes))
-    do i = 1, size(nodes)
-      call self%text%put_text(' ')
-      call self%text%put_integer(nodes(i))
-    end do
-    call self%text%put_line()
   end subroutine put_cell
 
   !> Write the types of all cells, which are the same.
@@ -184,8 +187,8 @@ contains
 
     call self%put_header('CELL_TYPES '//to_text(n))
     if (self%binary) then
-      do i = 1, n
-        call self%text%put_integer_bytes([cell_type])
+      do i = 1, n, vertices_at_once
+        call self%text%put_integer_bytes(spread(cell_type, 1, min(n + 1 - i, vertices_at_once)))
       end do
       return
     end if

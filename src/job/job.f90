@@ -64,6 +64,9 @@ contains
     if (allocated(error)) return
     call self%solver%start(self%model, error)
     if (.not. allocated(error)) call self%driver%after_start(self%model)
+    do i = 1, size(self%model%bodies)
+      call self%serializer%ask(self%model%bodies(i)%body%points)
+    end do
     if (.not. allocated(error)) call self%serializer%check(self%model, error)
     if (.not. allocated(error)) return
     if (len(error%file) == 0) error%file = self%config

@@ -82,6 +82,7 @@ contains
     character(:), allocatable :: path
     integer, allocatable :: line_of_row(:)
     real(wp), allocatable :: table(:, :)
+    logical, allocatable :: is_active(:)
     integer :: widths(2), n_widths, n_rows, n_columns
 
     associate (unused => properties)
@@ -97,7 +98,11 @@ contains
     call read_points_table(path, widths(:n_widths), n_rows, n_columns, table, error, line_of_row, &
                            self%memory_room, bytes_per_point(grid%kin))
     if (allocated(error)) return
-    call self%init_from_table(grid, table, path, line_of_row, error)
+    call take_table(self, grid, table, path, line_of_row, is_active, error)
+    if (allocated(error)) return
+    ! Large tables and all of the points together may be more than the memory holds.
+    deallocate (table, line_of_row)
+    call add_the_rest(self, grid%kin, path, is_active)
   end subroutine default_points_init
 
   !> Columns of a table that has all components.
@@ -149,34 +154,74 @@ contains
     integer, intent(in) :: line_of_row(:)
     !> The first row that can't be a point.
     type(error_t), allocatable, intent(out) :: error
-    integer :: p, n_components
+    logical, allocatable :: is_active(:)
+
+    call take_table(self, grid, table, path, line_of_row, is_active, error)
+    if (.not. allocated(error)) call add_the_rest(self, grid%kin, path, is_active)
+  end subroutine default_points_init_from_table
+
+  !> Set the arrays that a table has.
+  subroutine take_table(points, grid, table, path, line_of_row, is_active, error)
+    !> The points, not yet set.
+    class(default_points_t), intent(inout) :: points
+    !> The grid.
+    class(grid_t), intent(in) :: grid
+    !> Rows as in the class description, finite numbers, at least one row. (columns, n)
+    real(wp), intent(in) :: table(:, :)
+    !> File of the rows, for messages.
+    character(*), intent(in) :: path
+    !> Line of each row in the file, for messages. (n)
+    integer, intent(in) :: line_of_row(:)
+    !> Whether each point is active. (n)
+    logical, allocatable, intent(out) :: is_active(:)
+    !> The first row that can't be a point.
+    type(error_t), allocatable, intent(out) :: error
+    integer :: p, n, n_components
     real(wp) :: side
 
-    do p = 1, size(table, 2)
+    n = size(table, 2)
+    do p = 1, n
       call check_row(grid, table(:, p), path, line_of_row(p), error)
       if (allocated(error)) return
     end do
-    call self%allocate(grid%kin, size(table, 2))
-    self%file = path
     n_components = (size(table, 1) - 3)/2
-    do p = 1, self%n
-      self%mass(p) = table(1, p)
-      self%volume(p) = table(2, p)
-      self%x(:, p) = table(3:2 + self%kin%dim, p)
-      self%velocity(:n_components, p) = table(3 + n_components:2 + 2*n_components, p)
+    allocate (is_active(n), points%mass(n), points%volume(n), points%extent(n))
+    allocate (points%x(grid%kin%dim, n), points%velocity(grid%kin%nvel, n))
+    do p = 1, n
+      points%mass(p) = table(1, p)
+      points%volume(p) = table(2, p)
+      points%x(:, p) = table(3:2 + grid%kin%dim, p)
+      points%velocity(:, p) = 0.0_wp
+      points%velocity(:n_components, p) = table(3 + n_components:2 + 2*n_components, p)
+      is_active(p) = table(size(table, 1), p) > 0.5_wp
       ! In TYPE 4 the box of a point is its meridian section.
-      side = self%volume(p)
-      if (self%kin%dim == 2) side = sqrt(self%volume(p))
-      if (self%kin%dim == 3) side = self%volume(p)**(1.0_wp/3.0_wp)
-      self%extent(p) = 0.5_wp*side
-      if (self%kin%sim_type == type_axisymmetric) then
-        self%mass(p) = self%mass(p)*self%x(1, p)
-        self%volume(p) = self%volume(p)*self%x(1, p)
+      side = points%volume(p)
+      if (grid%kin%dim == 2) side = sqrt(points%volume(p))
+      if (grid%kin%dim == 3) side = points%volume(p)**(1.0_wp/3.0_wp)
+      points%extent(p) = 0.5_wp*side
+      if (grid%kin%sim_type == type_axisymmetric) then
+        points%mass(p) = points%mass(p)*points%x(1, p)
+        points%volume(p) = points%volume(p)*points%x(1, p)
       end if
     end do
-    self%widest_line = line_of_row(maxloc(self%extent, dim=1))
-    call move_inactive_back(self, is_active=table(size(table, 1), :) > 0.5_wp)
-  end subroutine default_points_init_from_table
+    points%widest_line = line_of_row(maxloc(points%extent, dim=1))
+  end subroutine take_table
+
+  !> Set what a table does not have.
+  subroutine add_the_rest(points, kin, path, is_active)
+    !> The points, with the arrays of a table.
+    class(default_points_t), intent(inout) :: points
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> File of the rows.
+    character(*), intent(in) :: path
+    !> Whether each point is active. (n)
+    logical, intent(in) :: is_active(:)
+
+    call points%allocate(kin, size(is_active))
+    points%file = path
+    call move_inactive_back(points, is_active)
+  end subroutine add_the_rest
 
   !> Check one row of a table.
   subroutine check_row(grid, row, path, line, error)

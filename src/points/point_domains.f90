@@ -18,6 +18,7 @@ module mpm_point_domains
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t, type_axisymmetric
   use mpm_node_list, only: node_list_t
+  use mpm_permutation, only: permutation_t
   use mpm_stencil, only: axis_fraction, block_size, natural_width, stencil_t
   use mpm_store, only: store_t
   use mpm_window, only: window_t
@@ -197,20 +198,20 @@ contains
     self%content(slot) = factor*self%content(slot)
   end subroutine point_domains_resize
 
-  !> Put all arrays into another order: slot i receives what was in slot order(i).
-  pure subroutine point_domains_permute(self, order)
+  !> Put all arrays into another order.
+  subroutine point_domains_permute(self, permutation)
     !> The domains.
     class(point_domains_t), intent(inout) :: self
-    !> A permutation of the slots. (n)
-    integer, intent(in) :: order(:)
+    !> Where each slot takes its value from. (n)
+    type(permutation_t), intent(in) :: permutation
 
-    if (allocated(self%side)) self%side = self%side(order)
-    if (allocated(self%stretch)) self%stretch = self%stretch(:, order)
-    if (allocated(self%corner)) self%corner = self%corner(:, order)
-    if (allocated(self%content)) self%content = self%content(order)
+    if (allocated(self%side)) call permutation%apply(self%side)
+    if (allocated(self%stretch)) call permutation%apply(self%stretch)
+    if (allocated(self%corner)) call permutation%apply(self%corner)
+    if (allocated(self%content)) call permutation%apply(self%content)
     if (.not. allocated(self%corner_cell)) return
     ! Some of the points may never have been inside the mesh.
-    if (size(self%corner_cell, 2) == size(order)) self%corner_cell = self%corner_cell(:, order)
+    if (size(self%corner_cell, 2) == permutation%size()) call permutation%apply(self%corner_cell)
   end subroutine point_domains_permute
 
   !> Corners of a domain, from the position of the point, x fastest.

@@ -7,6 +7,7 @@ module mpm_points
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
   use mpm_memory, only: size_text, way_to_more
+  use mpm_permutation, only: permutation_t
   use mpm_description, only: description_t
   use mpm_digest, only: digest_t
   use mpm_document, only: value_t
@@ -249,7 +250,8 @@ contains
     end associate
   end subroutine points_write_node_fields
 
-  !> Give all arrays their length; everything is 0 and in the order of the points file.
+  !> Give all arrays their length; those that are there already stay, all others are 0 and in the
+  !! order of the points file.
   subroutine points_allocate(self, kin, n)
     !> The points.
     class(points_t), intent(inout) :: self
@@ -262,19 +264,21 @@ contains
     self%kin = kin
     self%n = n
     self%n_inside = n
-    allocate (self%id(n), self%mass(n), self%volume(n), self%extent(n), self%key(n))
-    allocate (self%x(kin%dim, n), self%displacement(kin%nvel, n), self%velocity(kin%nvel, n))
-    allocate (self%stress(kin%nstress, n), self%order(n), self%history(0, n))
     self%file = ''
-    self%id = [(i, i=1, n)]
-    self%mass = 0.0_wp
-    self%volume = 0.0_wp
-    self%extent = 0.0_wp
-    self%key = outside
-    self%x = 0.0_wp
-    self%displacement = 0.0_wp
-    self%velocity = 0.0_wp
-    self%stress = 0.0_wp
+    if (.not. allocated(self%id)) then
+      allocate (self%id(n))
+      do i = 1, n
+        self%id(i) = i
+      end do
+    end if
+    if (.not. allocated(self%mass)) allocate (self%mass(n), source=0.0_wp)
+    if (.not. allocated(self%volume)) allocate (self%volume(n), source=0.0_wp)
+    if (.not. allocated(self%extent)) allocate (self%extent(n), source=0.0_wp)
+    if (.not. allocated(self%x)) allocate (self%x(kin%dim, n), source=0.0_wp)
+    if (.not. allocated(self%velocity)) allocate (self%velocity(kin%nvel, n), source=0.0_wp)
+    allocate (self%displacement(kin%nvel, n), self%stress(kin%nstress, n), source=0.0_wp)
+    allocate (self%key(n), source=outside)
+    allocate (self%order(n), self%history(0, n))
   end subroutine points_allocate
 
   !> Take a basis and find the keys of all points; `refresh_order` sorts them.
@@ -342,11 +346,13 @@ contains
                       self%order(:self%n_inside), self%row_offset, team)
     if (self%n_drifted < self%n_inside/8) return
     self%n_drifted = 0
-    allocate (order(self%n))
-    order(:self%n_inside) = self%order(:self%n_inside)
-    order(self%n_inside + 1:) = [(p, p=self%n_inside + 1, self%n)]
-    call self%permute(order, team)
-    self%order(:self%n_inside) = [(p, p=1, self%n_inside)]
+    do p = self%n_inside + 1, self%n
+      self%order(p) = p
+    end do
+    call self%permute(self%order, team)
+    do p = 1, self%n_inside
+      self%order(p) = p
+    end do
   end subroutine points_refresh_order
 
   !> Put all arrays into another order: slot i receives what was in slot order(i).
@@ -357,92 +363,28 @@ contains
     integer, intent(in) :: order(:)
     !> Number of threads; 1 when left out.
     integer, intent(in), optional :: threads
-    integer :: team
+    type(permutation_t) :: permutation
 
-    team = 1
-    if (present(threads)) team = threads
-    call permute_integers(order, team, self%id)
-    call permute_integers(order, team, self%key)
-    call permute_scalars(order, team, self%mass)
-    call permute_scalars(order, team, self%volume)
-    call permute_scalars(order, team, self%extent)
-    call permute_vectors(order, team, self%x)
-    call permute_vectors(order, team, self%displacement)
-    call permute_vectors(order, team, self%velocity)
-    call permute_vectors(order, team, self%stress)
-    if (size(self%history, 1) > 0) call permute_vectors(order, team, self%history)
-    if (allocated(self%gradient)) call permute_vectors(order, team, self%gradient)
-    if (allocated(self%shear_rate)) call permute_scalars(order, team, self%shear_rate)
-    if (allocated(self%load)) call permute_vectors(order, team, self%load)
-    if (allocated(self%affine)) call permute_vectors(order, team, self%affine)
-    if (allocated(self%reference_volume)) call permute_scalars(order, team, self%reference_volume)
-    if (allocated(self%smoothed_volume)) call permute_scalars(order, team, self%smoothed_volume)
-    if (allocated(self%shifted)) call permute_vectors(order, team, self%shifted)
-    if (allocated(self%domains)) call self%domains%permute(order)
+    call permutation%init(order, threads)
+    call permutation%apply(self%id)
+    call permutation%apply(self%key)
+    call permutation%apply(self%mass)
+    call permutation%apply(self%volume)
+    call permutation%apply(self%extent)
+    call permutation%apply(self%x)
+    call permutation%apply(self%displacement)
+    call permutation%apply(self%velocity)
+    call permutation%apply(self%stress)
+    if (size(self%history, 1) > 0) call permutation%apply(self%history)
+    if (allocated(self%gradient)) call permutation%apply(self%gradient)
+    if (allocated(self%shear_rate)) call permutation%apply(self%shear_rate)
+    if (allocated(self%load)) call permutation%apply(self%load)
+    if (allocated(self%affine)) call permutation%apply(self%affine)
+    if (allocated(self%reference_volume)) call permutation%apply(self%reference_volume)
+    if (allocated(self%smoothed_volume)) call permutation%apply(self%smoothed_volume)
+    if (allocated(self%shifted)) call permutation%apply(self%shifted)
+    if (allocated(self%domains)) call self%domains%permute(permutation)
   end subroutine points_permute
-
-  !> Permute integers.
-  subroutine permute_integers(order, threads, values)
-    !> A permutation. (n)
-    integer, intent(in) :: order(:)
-    !> Number of threads.
-    integer, intent(in) :: threads
-    !> Values. (n)
-    integer, allocatable, intent(inout) :: values(:)
-    integer, allocatable :: copy(:)
-    integer :: i
-
-    call move_alloc(values, copy)
-    allocate (values(size(order)))
-    !$omp parallel do default(none) num_threads(threads) schedule(static) &
-    !$omp shared(order, values, copy) private(i)
-    do i = 1, size(order)
-      values(i) = copy(order(i))
-    end do
-    !$omp end parallel do
-  end subroutine permute_integers
-
-  !> Permute reals.
-  subroutine permute_scalars(order, threads, values)
-    !> A permutation. (n)
-    integer, intent(in) :: order(:)
-    !> Number of threads.
-    integer, intent(in) :: threads
-    !> Values. (n)
-    real(wp), allocatable, intent(inout) :: values(:)
-    real(wp), allocatable :: copy(:)
-    integer :: i
-
-    call move_alloc(values, copy)
-    allocate (values(size(order)))
-    !$omp parallel do default(none) num_threads(threads) schedule(static) &
-    !$omp shared(order, values, copy) private(i)
-    do i = 1, size(order)
-      values(i) = copy(order(i))
-    end do
-    !$omp end parallel do
-  end subroutine permute_scalars
-
-  !> Permute columns.
-  subroutine permute_vectors(order, threads, values)
-    !> A permutation. (n)
-    integer, intent(in) :: order(:)
-    !> Number of threads.
-    integer, intent(in) :: threads
-    !> Values. (components, n)
-    real(wp), allocatable, intent(inout) :: values(:, :)
-    real(wp), allocatable :: copy(:, :)
-    integer :: i
-
-    call move_alloc(values, copy)
-    allocate (values(size(copy, 1), size(order)))
-    !$omp parallel do default(none) num_threads(threads) schedule(static) &
-    !$omp shared(order, values, copy) private(i)
-    do i = 1, size(order)
-      values(:, i) = copy(:, order(i))
-    end do
-    !$omp end parallel do
-  end subroutine permute_vectors
 
   !> Storage slot of each point of the points file.
   pure function points_slots(self) result(slot)
@@ -574,14 +516,14 @@ contains
     type(kept_points_t), allocatable :: kept
 
     call move_alloc(self%kept, kept)
-    call self%allocate(kin, kept%n)
-    self%n_inside = kept%n_inside
     call move_alloc(kept%id, self%id)
     call move_alloc(kept%mass, self%mass)
     call move_alloc(kept%volume, self%volume)
     call move_alloc(kept%extent, self%extent)
     call move_alloc(kept%x, self%x)
     call move_alloc(kept%velocity, self%velocity)
+    call self%allocate(kin, kept%n)
+    self%n_inside = kept%n_inside
     call move_alloc(kept%digest, self%digest)
     self%is_revived = .true.
   end subroutine points_revive

@@ -1,11 +1,11 @@
 !> Frames with the few fields that most pictures need.
 module mpm_minimal_vtk
   use mpm_body, only: body_t
+  use mpm_corotation, only: invariants
   use mpm_description, only: description_t
   use mpm_field_writer, only: field_writer_t
   use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
-  use mpm_kinematics, only: expand_stress
   use mpm_model, only: model_t
   use mpm_points, only: points_t
   use mpm_vtk_frames, only: add_vtk_properties, vtk_frames_t
@@ -67,22 +67,16 @@ contains
     class(body_t), intent(in) :: body
     !> Receiver of point fields.
     class(field_writer_t), intent(inout) :: writer
-    real(wp), allocatable :: values(:)
-    integer :: p
+    real(wp), allocatable :: values(:), pressure(:)
 
     associate (unused => self)
     end associate
     associate (points => body%points)
-      allocate (values(points%n))
+      allocate (values(points%n), pressure(points%n))
       call writer%vector('velocity', points%velocity)
       call writer%vector('displacement', points%displacement)
-      do p = 1, points%n
-        values(p) = -sum(points%stress(:3, p))/3.0_wp
-      end do
-      call writer%scalar('pressure', values)
-      do p = 1, points%n
-        values(p) = norm2(deviator(expand_stress(points%stress(:, p))))/sqrt(2.0_wp)
-      end do
+      call invariants(points%kin%nstress, points%n, points%stress, pressure, values)
+      call writer%scalar('pressure', pressure)
       call writer%scalar('tau_bar', values)
       values = 0.0_wp
       if (allocated(points%shear_rate)) values = points%shear_rate
@@ -143,21 +137,5 @@ contains
       end do
     end do
   end subroutine node_density
-
-  !> A tensor less a third of its trace on the diagonal.
-  pure function deviator(tensor) result(rest)
-    !> The tensor.
-    real(wp), intent(in) :: tensor(3, 3)
-    !> Its deviator.
-    real(wp) :: rest(3, 3)
-    real(wp) :: mean
-    integer :: a
-
-    mean = (tensor(1, 1) + tensor(2, 2) + tensor(3, 3))/3.0_wp
-    rest = tensor
-    do a = 1, 3
-      rest(a, a) = rest(a, a) - mean
-    end do
-  end function deviator
 
 end module mpm_minimal_vtk

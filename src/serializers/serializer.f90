@@ -7,13 +7,14 @@ module mpm_serializer
   use mpm_history, only: add_history_properties, history_t
   use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
+  use mpm_points, only: points_t
   use mpm_properties, only: properties_t
   use mpm_run_file, only: name_as_file, write_run_file
   use mpm_store, only: store_t
   implicit none
   private
-  public :: add_save_properties, serializer_name_run, serializer_restore, serializer_save, &
-            serializer_t
+  public :: add_save_properties, serializer_ask, serializer_name_run, serializer_restore, &
+            serializer_save, serializer_t
 
   !> A writer of frames.
   type, abstract, extends(configurable_t) :: serializer_t
@@ -51,6 +52,8 @@ module mpm_serializer
   contains
     !> Set up from the properties; nothing is written.
     procedure(init_i), deferred :: init
+    !> Make points keep what frames need.
+    procedure :: ask => serializer_ask
     !> Refuse a model whose frames would be too large; nothing is written.
     procedure :: check => serializer_check
     !> Make the folder of the frames.
@@ -205,6 +208,19 @@ contains
     can_save = allocated(self%save_folder)
     if (can_save) can_save = len_trim(self%save_folder) > 0
   end function serializer_can_save
+
+  !> Frames of all fields need the velocity gradients of the steps that end with a frame.
+  subroutine serializer_ask(self, points)
+    !> The serializer.
+    class(serializer_t), intent(in) :: self
+    !> Points of a body, started.
+    class(points_t), intent(inout) :: points
+
+    associate (unused => self)
+    end associate
+    if (allocated(points%gradient)) return
+    allocate (points%gradient(points%kin%ngrad, points%n), source=0.0_wp)
+  end subroutine serializer_ask
 
   !> Most serializers take any model.
   subroutine serializer_check(self, model, error)

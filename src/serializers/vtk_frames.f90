@@ -11,7 +11,6 @@ module mpm_vtk_frames
   use mpm_memory, only: memory_left, size_text, way_to_more
   use mpm_model, only: model_t
   use mpm_number_text, only: default_digits
-  use mpm_points, only: points_t
   use mpm_properties, only: properties_t
   use mpm_serializer, only: add_save_properties, serializer_t
   use mpm_strings, only: string_t, to_text
@@ -49,8 +48,6 @@ module mpm_vtk_frames
     procedure :: init => vtk_frames_init
     procedure :: check => vtk_frames_check
     procedure :: open => vtk_frames_open
-    !> Ask points to keep what frames need of a step.
-    procedure :: ask => vtk_frames_ask
     procedure :: write_frame => vtk_frames_write_frame
     procedure :: destination => vtk_frames_destination
     !> Send the fields of the points of an active body.
@@ -182,7 +179,7 @@ contains
                &= 0 for frames without the nodes of the whole grid')
   end subroutine vtk_frames_check
 
-  !> Make the folder, see that every file can be written, and ask points for what frames need.
+  !> Make the folder, and see that every file can be written.
   subroutine vtk_frames_open(self, model, error)
     !> The serializer.
     class(vtk_frames_t), intent(inout) :: self
@@ -210,23 +207,9 @@ contains
           call trial%discard()
           if (allocated(error)) return
         end if
-        call self%ask(body%points)
       end associate
     end do
   end subroutine vtk_frames_open
-
-  !> Ask points to keep their velocity gradients in steps that end with a frame.
-  subroutine vtk_frames_ask(self, points)
-    !> The serializer.
-    class(vtk_frames_t), intent(in) :: self
-    !> The points.
-    class(points_t), intent(inout) :: points
-
-    associate (unused => self)
-    end associate
-    if (allocated(points%gradient)) return
-    allocate (points%gradient(points%kin%ngrad, points%n), source=0.0_wp)
-  end subroutine vtk_frames_ask
 
   !> Write the state as the next frame; upon failure none of its files stays.
   subroutine vtk_frames_write_frame(self, model, error)

@@ -14,8 +14,9 @@ module mpm_vtkhdf
   use mpm_hdf5_file, only: hdf5_file_t
   use mpm_kinds, only: lp, wp
   use mpm_model, only: model_t
+  use mpm_points, only: points_t
   use mpm_properties, only: properties_t
-  use mpm_serializer, only: add_save_properties, serializer_name_run, serializer_t
+  use mpm_serializer, only: add_save_properties, serializer_ask, serializer_name_run, serializer_t
   use mpm_strings, only: nearest_name, string_t, to_text
   use mpm_window, only: window_t
   implicit none
@@ -44,6 +45,7 @@ module mpm_vtkhdf
   contains
     procedure, nopass :: describe => vtkhdf_describe
     procedure :: init => vtkhdf_init
+    procedure :: ask => vtkhdf_ask
     procedure :: open => vtkhdf_open
     procedure :: name_run => vtkhdf_name_run
     procedure :: write_frame => vtkhdf_write_frame
@@ -128,6 +130,24 @@ contains
     end if
   end subroutine vtkhdf_init
 
+  !> Make points keep velocity gradients, unless the fields that were chosen are there without.
+  subroutine vtkhdf_ask(self, points)
+    !> The serializer.
+    class(vtkhdf_t), intent(in) :: self
+    !> Points of a body, started.
+    class(points_t), intent(inout) :: points
+    type(field_names_t) :: known
+    logical :: enough
+    integer :: i
+
+    enough = size(self%fields) > 0
+    if (enough) call points%write_fields(known)
+    do i = 1, size(self%fields)
+      enough = enough .and. known%has(self%fields(i)%text)
+    end do
+    if (.not. enough) call serializer_ask(self, points)
+  end subroutine vtkhdf_ask
+
   !> Make the folder and the files, or go on in those of an earlier run.
   subroutine vtkhdf_open(self, model, error)
     !> The serializer.
@@ -138,12 +158,6 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: i
 
-    do i = 1, size(model%bodies)
-      associate (points => model%bodies(i)%body%points)
-        if (allocated(points%gradient)) cycle
-        allocate (points%gradient(points%kin%ngrad, points%n), source=0.0_wp)
-      end associate
-    end do
     call self%check_fields(model, error)
     if (.not. allocated(error)) call make_directories(self%folder, error)
     if (allocated(error)) return

@@ -36,6 +36,29 @@ def test_estimate_of_check(mpm3d: Run, tmp_path: Path) -> None:
     assert "bytes a point, of 537 MB (--max-memory)" in result.stdout
 
 
+def test_estimate_has_what_frames_keep(mpm3d: Run, tmp_path: Path) -> None:
+    """A shear rate for MinimalVTK, a velocity gradient for all fields, nothing for chosen ones."""
+    n = 1000
+    body = Body("a", block(3, [0.2] * 3, [0.8] * 3, [10] * 3))
+    # Digits of text, and the deflate level of VTKHDF.
+    settings = {"lengths": [1.0] * 3, "cells": [5] * 3, "bodies": [body], "digits": 9}
+
+    def stated(serializer: str, *options: str) -> float:
+        folder = tmp_path / f"{serializer}{len(options)}"
+        drop_scene(sim_type=3, serializer=serializer, **settings).write(folder)
+        text = mpm3d("-c", "scene.cfg", "--check", *options, cwd=folder).stdout
+        found = re.search(r"^memory: +(\S+) MB", text, re.M)
+        assert found, text
+        return 1e6 * float(found[1]) / n
+
+    # Three digits of some 200 bytes.
+    rounding = 1.0
+    least = stated("VTKHDF", "--set", "serializer.str-properties={f, save, run, velocity}")
+    assert stated("MinimalVTK") - least == pytest.approx(8, abs=rounding)
+    assert stated("DefaultVTK") - least == pytest.approx(72, abs=rounding)
+    assert stated("VTKHDF") - least == pytest.approx(72, abs=rounding)
+
+
 def test_same_frames(mpm3d: Run, tmp_path: Path) -> None:
     """A limit that is wide enough changes nothing."""
     for name, options in (("a", ()), ("b", ("--max-memory", "1M"))):
