@@ -412,13 +412,14 @@ contains
     real(wp), intent(out) :: p
     !> sqrt(3 s:s/2). [Pa]
     real(wp), intent(out) :: q
-    real(wp) :: rows(width, n_state), level(width, n_level), stress(width, 6)
+    real(wp) :: rows(width, n_state), level(width, n_level), stress(width, 6), six(6)
 
     rows(1, :) = row_of(state, rr)
     call find_strains(self, 1, rows, level)
     call find_invariants(self, 1, rows, level)
     call self%stresses(1, rows, level, stress)
-    t = full_of(stress(1, :))
+    six = stress(1, :)
+    t = full_of(six)
     p = level(1, of_p)
     q = sqrt(level(1, of_square))
   end subroutine breakage_respond
@@ -455,6 +456,7 @@ contains
     !> Its q. [Pa]
     real(wp), intent(out) :: q
     real(wp) :: rows(width, n_state), level(width, n_level), speed(width, 3), stress(width, 6)
+    real(wp) :: six(6)
 
     rows(1, :) = row_of(state, rr)
     call self%evaluate(1, rows, level)
@@ -462,7 +464,8 @@ contains
     call self%stresses(1, rows, level, stress)
     y = level(1, of_y)
     rates = speed(1, :)
-    t = full_of(stress(1, :))
+    six = stress(1, :)
+    t = full_of(six)
     q = sqrt(level(1, of_square))
   end subroutine breakage_yield
 

@@ -18,12 +18,11 @@ module mpm_breakage_flow
   real(wp), parameter :: tolerance = 1.0e-11_wp
   !> Values in step of a search.
   integer, parameter :: lockstep = 5
-  !> Factor of y in the denominator of what is interpolated.
-  real(wp), parameter :: bent = 1.0_wp/8.0_wp
   !> Elastic strain, over that of the trial state, that counts as none.
   real(wp), parameter :: vanished = 1.0e-8_wp
-  !> Size of the shear part of Be, which is near 1, that is lost in rounding.
-  real(wp), parameter :: unresolved = 4.0_wp*epsilon(1.0_wp)
+  !> Size of the shear part of Be, which is near 1, that is lost in rounding, and over that of all
+  !! strain: squared, as it is in the yield, it is less than the tolerance.
+  real(wp), parameter :: unresolved = 4.0_wp*epsilon(1.0_wp), slight = 1.0e-10_wp
   !> Directions of flow until a step counts as failed.
   integer, parameter :: patience = 2000
 
@@ -55,7 +54,7 @@ contains
       if (.not. level(i, of_y) > tolerance) cycle
       m = m + 1
       list(m) = i
-      start(i) = strain(level(i, :))
+      start(i) = strain(level(i, of_j), level(i, of_ev))
     end do
     call take(n_state, n, m, list, state, from)
     call take(n_level, n, m, list, level, known)
@@ -69,13 +68,12 @@ contains
           hits = hits + 1
           hit(hits) = k
         else if (piece < patience .and. lost(k) .and. &
-                 .not. faint(known(k, :), start(list(k)))) then
+                 .not. faint(known(k, of_j), known(k, of_ev), start(list(k)))) then
           left = left + 1
           keep(left) = k
         else
           i = list(k)
-          state(i, :) = from(k, :)
-          call flow_alone(law, start(i), state(i, :), level(i, :), good(i))
+          call flow_alone(law, start(i), k, from, i, state, level, good(i))
         end if
       end do
       if (hits == n) then
@@ -123,55 +121,67 @@ contains
   end subroutine take
 
   !> Size of the elastic strain Be - I.
-  pure function strain(known) result(size)
-    !> What is known of a state.
-    real(wp), intent(in) :: known(n_level)
+  pure function strain(j, ev) result(size)
+    !> J.
+    real(wp), intent(in) :: j
+    !> ev.
+    real(wp), intent(in) :: ev
     !> The size.
     real(wp) :: size
 
-    size = 2.0_wp*sqrt(known(of_j) + known(of_ev)**2/3.0_wp)
+    size = 2.0_wp*sqrt(j + ev**2/3.0_wp)
   end function strain
 
   !> Whether there is so little strain, or shear, that it counts as none.
-  pure function faint(known, start)
-    !> What is known of the state.
-    real(wp), intent(in) :: known(n_level)
+  pure function faint(j, ev, start)
+    !> J.
+    real(wp), intent(in) :: j
+    !> ev.
+    real(wp), intent(in) :: ev
     !> Size of the strain of the trial state.
     real(wp), intent(in) :: start
     !> Whether it is.
     logical :: faint
 
-    faint = strain(known) < vanished*start .or. 2.0_wp*sqrt(known(of_j)) <= unresolved
+    faint = strain(j, ev) < vanished*start .or. &
+            2.0_wp*sqrt(j) <= max(unresolved, slight*strain(j, ev))
   end function faint
 
   !> Bring one state back, in as many pieces as it takes.
-  pure subroutine flow_alone(law, start, row, known, good)
+  pure subroutine flow_alone(law, start, k, from, i, states, levels, good)
     !> Constants.
     class(breakage_t), intent(in) :: law
     !> Size of the strain of the trial state.
     real(wp), intent(in) :: start
-    !> The state.
-    real(wp), intent(inout) :: row(n_state)
-    !> What is known of it.
-    real(wp), intent(out) :: known(n_level)
+    !> Its row in `from`.
+    integer, intent(in) :: k
+    !> States of which it is one.
+    real(wp), intent(in) :: from(width, n_state)
+    !> Its row in `states` and `levels`.
+    integer, intent(in) :: i
+    !> States, of which one is set.
+    real(wp), intent(inout) :: states(width, n_state)
+    !> What is known of them.
+    real(wp), intent(inout) :: levels(width, n_level)
     !> Whether a state was found.
     logical, intent(out) :: good
     real(wp) :: state(width, n_state), level(width, n_level), next(width, n_state), shear
     logical :: found
-    integer :: i
+    integer :: piece
 
-    state(1, :) = row
+    state(1, :) = from(k, :)
     good = .true.
-    do i = 1, patience
+    do piece = 1, patience
       call law%evaluate(1, state, level)
       shear = 2.0_wp*sqrt(level(1, of_j))
       if (level(1, of_y) <= tolerance) then
         exit
-      else if (strain(level(1, :)) < vanished*start) then
+      else if (strain(level(1, of_j), level(1, of_ev)) < vanished*start) then
         ! Contraction has taken all of the pressure, and with it the strength.
         state(1, :6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
-      else if (shear > 0.0_wp .and. shear <= unresolved) then
-        ! Hardly any pressure: one unit in the last place of shear is more than it bears.
+      else if (shear > 0.0_wp .and. faint(level(1, of_j), level(1, of_ev), start)) then
+        ! Hardly any pressure, and one unit in the last place of shear is more than it bears, or
+        ! hardly any shear, of which each piece would take a half.
         state(1, :3) = sum(state(1, :3))/3.0_wp
         state(1, 4:6) = 0.0_wp
       else
@@ -179,10 +189,10 @@ contains
         state(1, :) = next(1, :)
         if (found) exit
       end if
-      good = i < patience
+      good = piece < patience
     end do
-    row = state(1, :)
-    known = level(1, :)
+    states(i, :) = state(1, :)
+    levels(i, :) = level(1, :)
   end subroutine flow_alone
 
   !> Go along a direction of flow to the yield surface, or as far as it may be followed.
@@ -240,7 +250,7 @@ contains
   end subroutine try
 
   !> Look for the yield surface along the directions of flow: Newton's rule, and then inverse
-  !! interpolation of all values, those of y/(1 + y/8), which is straighter than y under shear.
+  !! interpolation of all values, those of y/sqrt(1 + y/4), which is straighter than y under shear.
   pure subroutine search(law, n, state, level, ray, next, found, lost)
     !> Constants.
     class(breakage_t), intent(in) :: law
@@ -265,11 +275,11 @@ contains
     call direct(law, n, state, level, ray, path)
     call slopes(law, n, state, level, ray, path, slope)
     do i = 1, n
-      apart = 1.0_wp + bent*level(i, of_y)
-      y(i, 0) = level(i, of_y)/apart
+      y(i, 0) = level(i, of_y)/sqrt(1.0_wp + 0.25_wp*level(i, of_y))
       y(i, -1) = y(i, 0)
       ! Without a slope the way is beyond the largest one.
-      way = y(i, 0)/max(-slope(i)/apart**2, 0.5_wp*y(i, 0)/ray(i, of_far))
+      way = level(i, of_y)*((1.0_wp + 0.25_wp*level(i, of_y))/(1.0_wp + 0.125_wp*level(i, of_y)))
+      way = way/max(-slope(i), 0.5_wp*way/ray(i, of_far))
       x(i) = min(way, ray(i, of_far))
       column(i, 0) = 0.0_wp
       column(i, 1) = way
@@ -314,7 +324,7 @@ contains
     real(wp), intent(in) :: way(width)
     !> The largest ones.
     real(wp), intent(in) :: far(width)
-    !> y/(1 + y/8) of the yield less its aim, or 0 for those that stay where they are.
+    !> y/sqrt(1 + y/4) of the yield less its aim, or 0 for those that stay where they are.
     real(wp), intent(out) :: distance(width)
     !> Whether they are on the surface. (n)
     logical, intent(out) :: found(n)
@@ -333,7 +343,7 @@ contains
       ! Factors that are 0 or 1, since conditions would make the loop branch.
       ended = (0.5_wp + sign(0.5_wp, way(i) - far(i)))*(0.5_wp + sign(0.5_wp, y - tolerance))
       y = y + 0.5_wp*(noise - tolerance)
-      distance(i) = (0.5_wp + sign(0.5_wp, off))*(1.0_wp - ended)*y/(1.0_wp + bent*y)
+      distance(i) = (0.5_wp + sign(0.5_wp, off))*(1.0_wp - ended)*y/sqrt(1.0_wp + 0.25_wp*y)
       found(i) = off <= 0.0_wp
       lost(i) = ended > 0.5_wp
     end do

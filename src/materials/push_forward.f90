@@ -33,7 +33,7 @@ contains
     real(wp), intent(out) :: trace(n)
     !> Whether the step is one of a body; where it is not, B stays. (n)
     logical, intent(out) :: good(n)
-    real(wp) :: l(n, 3, 3), e(n, 3, 3), total(n), one(3, 3)
+    real(wp) :: l(n, 3, 3), e(n, 3, 3), total(n), one(3, 3), before(6)
     integer :: c, k, p
 
     call unpack_gradients(kin, n, dt, gradient, l)
@@ -50,7 +50,8 @@ contains
       l(p, :, :) = 0.0_wp
       one = dt*expand_gradient(kin, gradient(:, p))
       good(p) = all(abs(one) <= largest_step)
-      if (good(p)) b(p, :) = alone(one, b(p, :))
+      before = b(p, :)
+      if (good(p)) b(p, :) = alone(one, before)
     end do
     call series(n, l, e)
     call transform(n, e, rows, b)
