@@ -1,18 +1,24 @@
 !> A sand whose grains break.
 module mpm_breakage_mechanics_sand
   use mpm_advance, only: turn_stress
-  use mpm_breakage, only: breakage_state_t, breakage_t
-  use mpm_deformation, only: exponential, identity, largest_step
+  use mpm_breakage, only: breakage_state_t, breakage_t, n_level, n_state, of_breakage, of_c, &
+                          of_density, of_ev, of_high, of_porosity, of_s, of_y, width
+  use mpm_breakage_flow, only: flow
+  use mpm_deformation, only: identity
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
   use mpm_kinds, only: wp
-  use mpm_kinematics, only: expand_gradient, expand_stress, kinematics_t, type_axisymmetric
+  use mpm_kinematics, only: expand_stress, kinematics_t, type_axisymmetric
   use mpm_material, only: material_t
   use mpm_properties, only: properties_t
+  use mpm_push_forward, only: push_forward
   implicit none
   private
   public :: breakage_mechanics_sand_t
+
+  !> Be without strain, components xx yy zz xy yz zx.
+  real(wp), parameter :: rest(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
 
   !> Breakage mechanics with critical state.
   !!
@@ -76,8 +82,9 @@ contains
                               &definite; mpm_3d adds dt (L Be + Be transpose(L)).')
     call description%add_note('The plastic step follows the flow in pieces over which B and the &
                               &porosity change by at most 0.02, each with the direction at its &
-                              &start, and ends on the yield surface to 1e-11. mpm_3d takes one &
-                              &piece and a secant search that may fail without a word.')
+                              &start, and ends on the yield surface to 1e-11, or to the rounding &
+                              &of Be where strains are small. mpm_3d takes one piece and a secant &
+                              &search that may fail without a word.')
     call description%add_note('A stress that a body assigns leaves its pressure, without shear; &
                               &too much for the grains, or for a loose packing, is an error.')
     call description%add_note('The speed of waves is at least that under the pressure which &
@@ -201,41 +208,79 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a stress; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp), parameter :: largest = 1.0e8_wp
-    type(breakage_state_t) :: state
-    real(wp) :: l(3, 3), f(3, 3), t(3, 3), limits(2), six(6), trace
-    integer :: p
-    logical :: good
+    integer :: a, b
 
     first_bad = 0
-    do p = 1, n
-      l = expand_gradient(self%kin, gradient(:, p))
-      good = all(abs(dt*l) <= largest_step)
-      t = 0.0_wp
-      state = state_of(history(:, p))
-      if (good) then
-        call exponential(dt*l, f)
-        state%be = matmul(f, matmul(state%be, transpose(f)))
-        trace = dt*(l(1, 1) + l(2, 2) + l(3, 3))
-        limits = self%law%porosities(state%breakage)
-        if (sum(state%be*identity) >= 3.0_wp .or. state%porosity > limits(2)) then
-          ! Pulled apart, or looser than any packing whose grains touch.
-          state%be = identity
-          state%porosity = 1.0_wp - (1.0_wp - state%porosity)*exp(-trace)
-        else
-          good = all(abs(state%be) <= largest)
-          if (good) call self%law%flow(mass(p)/(volume(p)*self%law%density), state, t, good)
-        end if
-      end if
-      if (.not. good .or. .not. abs(state%porosity) <= largest) then
-        first_bad = p
-        return
-      end if
-      call remember(state, history(:, p))
-      six = [t(1, 1), t(2, 2), t(3, 3), t(1, 2), t(2, 3), t(3, 1)]
-      stress(:, p) = six(:self%kin%nstress)
+    do a = 1, n, width
+      b = min(n, a + width - 1)
+      call advance(self, b - a + 1, dt, gradient(:, a:b), mass(a:b), volume(a:b), stress(:, a:b), &
+                   history(:, a:b), first_bad)
+      if (first_bad > 0) first_bad = first_bad + a - 1
+      if (first_bad > 0) return
     end do
   end subroutine breakage_mechanics_sand_update_stress
+
+  !> Advance the stress of a few points over one step.
+  pure subroutine advance(self, n, dt, gradient, mass, volume, stress, history, first_bad)
+    !> The material.
+    class(breakage_mechanics_sand_t), intent(in) :: self
+    !> Number of points, at most `width`.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients of the step. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(self%kin%ngrad, n)
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes at the end of the step. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(self%kin%nstress, n)
+    !> B, porosity, Be. (n_history, n)
+    real(wp), intent(inout) :: history(self%n_history, n)
+    !> First point without a stress; 0 when there is none.
+    integer, intent(out) :: first_bad
+    real(wp), parameter :: largest = 1.0e8_wp
+    real(wp) :: state(width, n_state), level(width, n_level), t(width, 6), trace(n), size(n)
+    logical :: good(n), found(n)
+    integer :: c, p
+
+    do c = 1, 6
+      state(:n, c) = 0.0_wp
+      if (c <= self%kin%nstress) state(:n, c) = history(2 + c, :)
+    end do
+    state(:n, of_breakage) = history(1, :)
+    state(:n, of_porosity) = history(2, :)
+    state(:n, of_density) = mass/(volume*self%law%density)
+    call push_forward(self%kin, n, dt, gradient, width, state, trace, good)
+    size = 0.0_wp
+    do c = 1, 6
+      size = size + abs(state(:n, c))
+    end do
+    do p = 1, n
+      good(p) = good(p) .and. size(p) <= largest
+      if (.not. good(p)) state(p, :6) = rest
+    end do
+    call self%law%evaluate(n, state, level)
+    do p = 1, n
+      if (level(p, of_ev) < 0.0_wp .and. state(p, of_porosity) <= level(p, of_high)) cycle
+      ! Pulled apart, or looser than any packing whose grains touch.
+      state(p, :6) = rest
+      if (good(p)) state(p, of_porosity) = 1.0_wp - (1.0_wp - state(p, of_porosity))*exp(-trace(p))
+      level(p, of_y) = -1.0_wp
+      level(p, of_c) = 0.0_wp
+      level(p, of_s) = 0.0_wp
+    end do
+    call flow(self%law, n, state, level, found)
+    call self%law%stresses(n, state, level, t)
+    do c = 1, self%kin%nstress
+      stress(c, :) = t(:n, c)
+      history(2 + c, :) = state(:n, c)
+    end do
+    history(1, :) = state(:n, of_breakage)
+    history(2, :) = state(:n, of_porosity)
+    first_bad = findloc(good .and. found .and. abs(history(2, :)) <= largest, .false., dim=1)
+  end subroutine advance
 
   !> Give points the pressure of a stress, without shear.
   pure subroutine breakage_mechanics_sand_assign_stress(self, n, target, mass, volume, stress, &

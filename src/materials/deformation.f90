@@ -14,9 +14,9 @@ module mpm_deformation
                             type_plane_strain
   implicit none
   private
-  public :: advance_deformation, advance_deformations, deformation_size, determinant
+  public :: advance_deformation, advance_deformations, deformation_size, determinant, multiply
   public :: expand_deformation, exponential, identity, inverse, largest_step, root
-  public :: store_deformation, turn_deformation
+  public :: store_deformation, turn_deformation, unpack_gradients
 
   !> Largest dt |L| of a step, above which a motion is no longer one of a body.
   real(wp), parameter :: largest_step = 30.0_wp
