@@ -219,9 +219,11 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a stress; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: trial(n), tau(n), factor(n), pressure(n), kept(n), phi(n), rate(n), static
+    real(wp) :: trial(n), tau(n), factor(n), pressure(n), kept(n), phi(n), rate(n), before(n)
+    real(wp) :: static
     integer :: list(n), m, p
 
+    before = -(stress(1, :) + stress(2, :) + stress(3, :))/3.0_wp
     call spin_stress(self%kin, n, dt, gradient, stress)
     call add_strain(self%kin, n, dt, self%law%bulk - 2.0_wp*self%law%shear/3.0_wp, self%law%shear, &
                     gradient, stress)
@@ -241,7 +243,8 @@ contains
       end if
     end do
     if (m > 0) then
-      call flow(self, n, m, list(:m), dt, phi, trial, tau, history, pressure, kept, rate, first_bad)
+      call flow(self, n, m, list(:m), dt, phi, trial, tau, before, history, pressure, kept, rate, &
+                first_bad)
       if (first_bad > 0) return
     end if
     factor = 1.0_wp
@@ -255,8 +258,8 @@ contains
   end subroutine cornstarch_update_stress
 
   !> Bring the points of a list back to their strength.
-  pure subroutine flow(self, n, m, list, dt, phi, trial, tau, history, pressure, kept, rate, &
-                       first_bad)
+  pure subroutine flow(self, n, m, list, dt, phi, trial, tau, before, history, pressure, kept, &
+                       rate, first_bad)
     !> The material.
     class(cornstarch_t), intent(in) :: self
     !> Number of points.
@@ -273,6 +276,8 @@ contains
     real(wp), intent(in) :: trial(n)
     !> Trial shear stresses. [Pa] (n)
     real(wp), intent(in) :: tau(n)
+    !> Pressures of the last step. [Pa] (n)
+    real(wp), intent(in) :: before(n)
     !> Plastic shear strain, its rate, c, and viscosity, of the last step. (4, n)
     real(wp), intent(in) :: history(self%n_history, n)
     !> Pressures. [Pa] (n)
@@ -288,6 +293,7 @@ contains
     slope = self%slope(0) + (self%slope(1) - self%slope(0))*history(3, list)
     critical = jam(self, history(3, list))
     g = history(2, list)
+    p = before(list)
     call self%law%solve_block(m, dt, history(self%at_viscosity, list), slope, critical, critical, &
                               phi(list), trial(list), tau(list), p, t, g, first_bad)
     if (first_bad > 0) first_bad = list(first_bad)

@@ -249,6 +249,7 @@ contains
     integer, intent(out) :: first_bad
     real(wp) :: trial(n), tau(n), factor(n), pressure(n), kept(n), phi(n), rate(n), viscosity(n)
 
+    pressure = -(stress(1, :) + stress(2, :) + stress(3, :))/3.0_wp
     call spin_stress(self%kin, n, dt, gradient, stress)
     call add_strain(self%kin, n, dt, self%law%bulk - 2.0_wp*self%law%shear/3.0_wp, self%law%shear, &
                     gradient, stress)
