@@ -8,11 +8,13 @@
 !!
 !! x1 >= 0 keeps p >= 0, and x2 <= 0 keeps p <= C (rho_s d**2 y**2 + 2 eta y) with y = g - K_4 x2
 !! and C = (a phi/(phi_m - phi))**2 where phi is below a gate. All of it is one equation for g: for
-!! each g there is one p, and tau - strength falls from g = 0 to tau = 0.
+!! each g there is one p, and tau - strength falls from g = 0 to tau = 0. Only in packings that rest
+!! and yet liquefy, mu_1 < K_3 (phi_m - phi), it may rise in between and have three roots; which one
+!! is found depends on where the search starts, at the shear rate and pressure of the last step.
 module mpm_granular_flow
   use mpm_bracket, only: bracket_t
-  use mpm_granular_step, only: granular_step_t, rest_or_pull, search_in_step, suspend_in_step, &
-                                 width
+  use mpm_granular_step, only: granular_step_t, least_shear, rest_or_pull, search_in_step, &
+                               suspend_in_step, width
   use mpm_kinds, only: wp
   implicit none
   private
@@ -205,7 +207,7 @@ contains
     call rest_or_pull(step, n, critical, gate, phi, p_trial, tau_trial, rate_known, p_known, known)
     if (any(phi < gate)) then
       if (self%compaction > 0.0_wp) then
-        where (phi < gate) known(:n) = -1.0_wp
+        where (phi < gate .and. max(p_trial, tau_trial) > least_shear) known(:n) = -1.0_wp
       else
         call suspend_in_step(step, n, viscosity, slope, critical, gate, phi, p_trial, tau_trial, &
                              rate_known, p_known, known)

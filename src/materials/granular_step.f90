@@ -12,7 +12,7 @@ module mpm_granular_step
   use mpm_kinds, only: wp
   implicit none
   private
-  public :: granular_step_t, rest_or_pull, search_in_step, suspend_in_step, width
+  public :: granular_step_t, least_shear, rest_or_pull, search_in_step, suspend_in_step, width
 
   !> Points at a time.
   integer, parameter :: width = 128
@@ -30,8 +30,10 @@ module mpm_granular_step
   real(wp), parameter :: least = 0.2_wp, most = 10.0_wp
   !> Share of the trial stresses below which a rate or a pressure is no guess.
   real(wp), parameter :: faint = 1.0e-12_wp
-  !> The least that is divided by, so that the quotients have squares: less is no state of matter.
-  real(wp), parameter :: least_divisor = 1.0e-100_wp
+  !> Shear stress that stays as it is: ahead of waves there are stresses whose squares are 0. [Pa]
+  real(wp), parameter :: least_shear = 1.0e-120_wp
+  !> The least that is divided by, and the largest quotient whose square is wanted.
+  real(wp), parameter :: least_divisor = 1.0e-290_wp, largest_quotient = 1.0e140_wp
   !> Least distance of a packing from the critical one.
   real(wp), parameter :: nothing = 1.0e-20_wp
   !> Columns of the points at work: what they are given, the shear rate, the root of the pressure, 0
@@ -95,6 +97,7 @@ contains
     do i = 1, n
       p(i) = merge(p(i), 0.0_wp, phi(i) >= gate(i))
       over(i) = merge(over(i), tau_trial(i), phi(i) >= gate(i))
+      over(i) = merge(over(i), 0.0_wp, tau_trial(i) > least_shear)
       found(i) = merge(1.0_wp, 0.0_wp, over(i) <= 0.0_wp .or. pull(i) <= 0.0_wp)
       rate(i) = merge(0.0_wp, rate(i), over(i) <= 0.0_wp)
     end do
@@ -373,7 +376,7 @@ contains
       rubbed = c + step%inertial*s
       all = c*packed*rubbed
       det = 1.0_wp/max(all, least_divisor)
-      over = packed*rubbed*det
+      over = min(packed*rubbed*det, largest_quotient)
       mu = packed*c*det
       packed = rubbed*c*det
       rubbed = mu
