@@ -1,10 +1,11 @@
 !> A suspension that thickens when sheared.
 module mpm_cornstarch
-  use mpm_corotation, only: add_strain, first_not_finite, invariants, rebuild, spin_stress
+  use mpm_corotation, only: first_not_finite, invariants, rebuild, trial_stress
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
   use mpm_granular_flow, only: granular_flow_t
+  use mpm_granular_step, only: width
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
   use mpm_properties, only: properties_t
@@ -219,110 +220,112 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a stress; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: trial(n), tau(n), factor(n), pressure(n), kept(n), phi(n), rate(n), static
-    integer :: list(n), m, p
+    integer :: a
 
-    call spin_stress(self%kin, n, dt, gradient, stress)
-    call add_strain(self%kin, n, dt, self%law%bulk - 2.0_wp*self%law%shear/3.0_wp, self%law%shear, &
-                    gradient, stress)
-    call invariants(self%kin%nstress, n, stress, trial, tau)
-    first_bad = first_not_finite(1, n, trial + tau)
-    if (first_bad > 0) return
-    phi = mass/(volume*self%law%grain_density)
-    kept = tau
-    pressure = trial
-    rate = 0.0_wp
-    m = 0
-    do p = 1, n
-      static = self%law%friction + self%law%dilation*(phi(p) - jam(self, history(3, p)))
-      if (trial(p) < 0.0_wp .or. tau(p) > max(0.0_wp, static*trial(p))) then
-        m = m + 1
-        list(m) = p
-      end if
+    first_bad = 0
+    do a = 1, n, width
+      call advance(self, min(width, n - a + 1), dt, gradient(1, a), mass(a), volume(a), &
+                   stress(1, a), history(1, a), first_bad)
+      if (first_bad == 0) cycle
+      first_bad = first_bad + a - 1
+      return
     end do
-    if (m > 0) then
-      call flow(self, n, m, list(:m), dt, phi, trial, tau, history, pressure, kept, rate, first_bad)
-      if (first_bad > 0) return
-    end if
-    factor = 1.0_wp
-    where (tau > 0.0_wp) factor = kept/tau
-    history(1, :) = history(1, :) + dt*rate
-    history(2, :) = rate
-    do p = 1, n
-      call advance_contacts(self, dt, phi(p), kept(p), rate(p), history(3, p))
-    end do
-    call rebuild(self%kin%nstress, n, trial, factor, pressure, stress)
   end subroutine cornstarch_update_stress
 
-  !> Bring the points of a list back to their strength.
-  pure subroutine flow(self, n, m, list, dt, phi, trial, tau, history, pressure, kept, rate, &
-                       first_bad)
+  !> Advance the stress of so many points that work arrays have a fixed size.
+  pure subroutine advance(self, n, dt, gradient, mass, volume, stress, history, first_bad)
+    !> The material.
+    class(cornstarch_t), intent(in) :: self
+    !> Number of points, at most `width`.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients of the step. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(self%kin%ngrad, n)
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes at the end of the step. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(self%kin%nstress, n)
+    !> Plastic shear strain, its rate, c, and viscosity. (4, n)
+    real(wp), intent(inout) :: history(self%n_history, n)
+    !> First point without a stress; 0 when there is none.
+    integer, intent(out) :: first_bad
+    real(wp), dimension(width) :: trial, tau, pressure, kept, phi, rate, viscosity, factor
+    real(wp), dimension(width) :: contacts, slope, critical, gate
+    integer :: p
+
+    pressure(:n) = -(stress(1, :) + stress(2, :) + stress(3, :))/3.0_wp
+    call trial_stress(self%kin, n, dt, self%law%bulk - 2.0_wp*self%law%shear/3.0_wp, &
+                      self%law%shear, gradient, stress, trial, tau)
+    factor(:n) = trial(:n) + tau(:n)
+    first_bad = first_not_finite(1, n, factor)
+    if (first_bad > 0) return
+    phi(:n) = mass/(volume*self%law%grain_density)
+    rate(:n) = history(2, :)
+    contacts(:n) = history(3, :)
+    viscosity(:n) = history(self%at_viscosity, :)
+    slope(:n) = self%slope(0) + (self%slope(1) - self%slope(0))*contacts(:n)
+    critical(:n) = jam(self, contacts(:n))
+    ! Stresses within the static cone stay at any packing.
+    do p = 1, n
+      factor(p) = tau(p) - max(0.0_wp, self%law%friction &
+                               + self%law%dilation*(phi(p) - critical(p)))*trial(p)
+      gate(p) = merge(0.0_wp, critical(p), factor(p) <= 0.0_wp .and. trial(p) >= 0.0_wp)
+    end do
+    call self%law%solve_block(n, dt, viscosity, slope, critical, gate, phi, trial, tau, pressure, &
+                              kept, rate, first_bad)
+    if (first_bad > 0) return
+    factor(:n) = kept(:n)/max(tau(:n), tiny(1.0_wp))
+    history(1, :) = history(1, :) + dt*rate(:n)
+    history(2, :) = rate(:n)
+    call advance_contacts(self, n, dt, phi, kept, rate, contacts)
+    history(3, :) = contacts(:n)
+    call rebuild(self%kin%nstress, n, trial, factor, pressure, stress)
+  end subroutine advance
+
+  !> Advance the fractions of contacts by backward Euler.
+  pure subroutine advance_contacts(self, n, dt, phi, tau, rate, contacts)
     !> The material.
     class(cornstarch_t), intent(in) :: self
     !> Number of points.
     integer, intent(in) :: n
-    !> Number of those that flow.
-    integer, intent(in) :: m
-    !> Those that flow.
-    integer, intent(in) :: list(m)
     !> Time step. [s]
     real(wp), intent(in) :: dt
     !> Packing fractions. (n)
     real(wp), intent(in) :: phi(n)
-    !> Trial pressures. [Pa] (n)
-    real(wp), intent(in) :: trial(n)
-    !> Trial shear stresses. [Pa] (n)
-    real(wp), intent(in) :: tau(n)
-    !> Plastic shear strain, its rate, c, and viscosity, of the last step. (4, n)
-    real(wp), intent(in) :: history(self%n_history, n)
-    !> Pressures. [Pa] (n)
-    real(wp), intent(inout) :: pressure(n)
     !> Shear stresses. [Pa] (n)
-    real(wp), intent(inout) :: kept(n)
+    real(wp), intent(in) :: tau(n)
     !> Plastic shear rates. [1/s] (n)
-    real(wp), intent(inout) :: rate(n)
-    !> First point without a stress; 0 when there is none.
-    integer, intent(out) :: first_bad
-    real(wp) :: slope(m), critical(m), p(m), t(m), g(m)
+    real(wp), intent(in) :: rate(n)
+    !> Fractions of contacts. (n)
+    real(wp), intent(inout) :: contacts(n)
+    real(wp) :: lost(width), jammed(0:1), delta, push, gain, loss, most, k5
+    integer :: i
 
-    slope = self%slope(0) + (self%slope(1) - self%slope(0))*history(3, list)
-    critical = jam(self, history(3, list))
-    g = history(2, list)
-    call self%law%solve_block(m, dt, history(self%at_viscosity, list), slope, critical, critical, &
-                              phi(list), trial(list), tau(list), p, t, g, first_bad)
-    if (first_bad > 0) first_bad = list(first_bad)
-    pressure(list) = p
-    kept(list) = t
-    rate(list) = g
-  end subroutine flow
-
-  !> Advance the fraction of contacts by backward Euler.
-  pure subroutine advance_contacts(self, dt, phi, tau, rate, c)
-    !> The material.
-    class(cornstarch_t), intent(in) :: self
-    !> Time step. [s]
-    real(wp), intent(in) :: dt
-    !> Packing fraction.
-    real(wp), intent(in) :: phi
-    !> Shear stress. [Pa]
-    real(wp), intent(in) :: tau
-    !> Plastic shear rate. [1/s]
-    real(wp), intent(in) :: rate
-    !> Fraction of contacts.
-    real(wp), intent(inout) :: c
-    real(wp) :: gain, loss, most
-
-    associate (j => self%jammed(0), f => self%jammed(1))
-      if (phi > j) then
-        c = 1.0_wp
-        return
-      end if
-      gain = dt*self%contact_rate*(tau/self%push)*sqrt(tau/self%push)*rate
-      loss = dt*self%contact_rate*(rate + tau*(self%loss(1)*(j - phi)**self%power &
-                                               + self%loss(2)*(j - phi)**0.1_wp))
-      most = min(1.0_wp, max(self%delta, (phi - j)/(f - j)))
-      c = (c + gain*most)/(1.0_wp + gain + loss)
-    end associate
+    jammed = self%jammed
+    delta = self%delta
+    push = self%push
+    k5 = dt*self%contact_rate
+    do i = 1, n
+      lost(i) = self%loss(1)*max(0.0_wp, jammed(0) - phi(i))
+    end do
+    if (abs(self%power - 1.0_wp) > 0.0_wp .or. self%loss(2) > 0.0_wp) then
+      do i = 1, n
+        lost(i) = self%loss(1)*max(0.0_wp, jammed(0) - phi(i))**self%power &
+                  + self%loss(2)*max(0.0_wp, jammed(0) - phi(i))**0.1_wp
+      end do
+    end if
+    do i = 1, n
+      gain = k5*(tau(i)/push)*sqrt(tau(i)/push)*rate(i)
+      loss = k5*(rate(i) + tau(i)*lost(i))
+      most = min(1.0_wp, max(delta, (phi(i) - jammed(0))/(jammed(1) - jammed(0))))
+      contacts(i) = (contacts(i) + gain*most)/(1.0_wp + gain + loss)
+    end do
+    do i = 1, n
+      contacts(i) = merge(1.0_wp, contacts(i), phi(i) > jammed(0))
+    end do
   end subroutine advance_contacts
 
   !> Give points a stress, where they can have it: its shear is cut to the static strength.

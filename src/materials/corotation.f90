@@ -9,14 +9,152 @@
 !! T_xx = -p + q tau. Elastic strains that turn as they grow are of first order in dt.
 module mpm_corotation
   use mpm_kinds, only: wp
-  use mpm_kinematics, only: kinematics_t, type_1d, type_axisymmetric, type_out_of_plane, &
+  use mpm_kinematics, only: kinematics_t, type_1d, type_3d, type_axisymmetric, type_out_of_plane, &
                             type_plane_strain
   implicit none
   private
   public :: add_strain, elastic_energy, first_not_finite, invariants, rebuild, shear_rates
-  public :: spin_stress, strain_rates
+  public :: spin_stress, strain_rates, trial_stress
+
+  !> Points that lie component by component at a time.
+  integer, parameter :: width = 128
 
 contains
+
+  !> Trial stresses of a step, T* = Q T transpose(Q) + dt C:D, their pressures and shear stresses.
+  pure subroutine trial_stress(kin, n, dt, lambda, shear, gradient, stress, pressure, tau)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> First Lame constant. [Pa]
+    real(wp), intent(in) :: lambda
+    !> Shear modulus. [Pa]
+    real(wp), intent(in) :: shear
+    !> Velocity gradients. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
+    !> Stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(kin%nstress, n)
+    !> Trial pressures. [Pa] (n)
+    real(wp), intent(out) :: pressure(n)
+    !> Trial shear stresses. [Pa] (n)
+    real(wp), intent(out) :: tau(n)
+
+    if (kin%sim_type == type_3d) then
+      call trial_stress_3d(n, dt, lambda, shear, gradient, stress, pressure, tau)
+    else
+      call spin_stress(kin, n, dt, gradient, stress)
+      call add_strain(kin, n, dt, lambda, shear, gradient, stress)
+      call invariants(kin%nstress, n, stress, pressure, tau)
+    end if
+  end subroutine trial_stress
+
+  !> Trial stresses in 3D, so many points at a time that they lie component by component in scratch
+  !> of a fixed size.
+  pure subroutine trial_stress_3d(n, dt, lambda, shear, gradient, stress, pressure, tau)
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> First Lame constant. [Pa]
+    real(wp), intent(in) :: lambda
+    !> Shear modulus. [Pa]
+    real(wp), intent(in) :: shear
+    !> Velocity gradients. [1/s] (9, n)
+    real(wp), intent(in) :: gradient(9, n)
+    !> Stresses. [Pa] (6, n)
+    real(wp), intent(inout) :: stress(6, n)
+    !> Trial pressures. [Pa] (n)
+    real(wp), intent(out) :: pressure(n)
+    !> Trial shear stresses. [Pa] (n)
+    real(wp), intent(out) :: tau(n)
+    real(wp) :: g(width, 9), t(width, 6)
+    integer :: first, m, i, p
+
+    do first = 1, n, width
+      m = min(width, n - first + 1)
+      do i = 1, m
+        p = first + i - 1
+        g(i, :) = gradient(:, p)
+        t(i, :) = stress(:, p)
+      end do
+      call turn_and_strain(m, dt, lambda, shear, g, t, pressure(first), tau(first))
+      do i = 1, m
+        p = first + i - 1
+        stress(:, p) = t(i, :)
+      end do
+    end do
+  end subroutine trial_stress_3d
+
+  !> Trial stresses of points that lie component by component.
+  pure subroutine turn_and_strain(n, dt, lambda, shear, g, t, pressure, tau)
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> First Lame constant. [Pa]
+    real(wp), intent(in) :: lambda
+    !> Shear modulus. [Pa]
+    real(wp), intent(in) :: shear
+    !> Velocity gradients xx xy xz yx yy yz zx zy zz. [1/s]
+    real(wp), intent(in) :: g(width, 9)
+    !> Stresses xx yy zz xy yz zx. [Pa]
+    real(wp), intent(inout) :: t(width, 6)
+    !> Trial pressures. [Pa] (n)
+    real(wp), intent(out) :: pressure(n)
+    !> Trial shear stresses. [Pa] (n)
+    real(wp), intent(out) :: tau(n)
+    real(wp) :: h, g1, g2, x, y, z, f, xx, yy, zz, xy, yx, yz, zy, zx, xz, sphere
+    real(wp) :: s1, s2, s3, s4, s5, s6, m11, m12, m13, m21, m22, m23, m31, m32, m33
+    integer :: p
+
+    h = 0.25_wp*dt
+    g1 = dt*shear
+    g2 = 2.0_wp*g1
+    do p = 1, n
+      ! As in `turn`.
+      x = h*(g(p, 8) - g(p, 6))
+      y = h*(g(p, 3) - g(p, 7))
+      z = h*(g(p, 4) - g(p, 2))
+      f = 2.0_wp/(1.0_wp + (x*x + y*y + z*z))
+      xx = 1.0_wp - f*(y*y + z*z)
+      yy = 1.0_wp - f*(z*z + x*x)
+      zz = 1.0_wp - f*(x*x + y*y)
+      xy = f*(x*y - z)
+      yx = f*(x*y + z)
+      yz = f*(y*z - x)
+      zy = f*(y*z + x)
+      zx = f*(z*x - y)
+      xz = f*(z*x + y)
+      m11 = xx*t(p, 1) + xy*t(p, 4) + xz*t(p, 6)
+      m21 = yx*t(p, 1) + yy*t(p, 4) + yz*t(p, 6)
+      m31 = zx*t(p, 1) + zy*t(p, 4) + zz*t(p, 6)
+      m12 = xx*t(p, 4) + xy*t(p, 2) + xz*t(p, 5)
+      m22 = yx*t(p, 4) + yy*t(p, 2) + yz*t(p, 5)
+      m32 = zx*t(p, 4) + zy*t(p, 2) + zz*t(p, 5)
+      m13 = xx*t(p, 6) + xy*t(p, 5) + xz*t(p, 3)
+      m23 = yx*t(p, 6) + yy*t(p, 5) + yz*t(p, 3)
+      m33 = zx*t(p, 6) + zy*t(p, 5) + zz*t(p, 3)
+      sphere = dt*lambda*(g(p, 1) + g(p, 5) + g(p, 9))
+      s1 = m11*xx + m12*xy + m13*xz + (sphere + g2*g(p, 1))
+      s2 = m21*yx + m22*yy + m23*yz + (sphere + g2*g(p, 5))
+      s3 = m31*zx + m32*zy + m33*zz + (sphere + g2*g(p, 9))
+      s4 = m11*yx + m12*yy + m13*yz + g1*(g(p, 2) + g(p, 4))
+      s5 = m21*zx + m22*zy + m23*zz + g1*(g(p, 6) + g(p, 8))
+      s6 = m11*zx + m12*zy + m13*zz + g1*(g(p, 3) + g(p, 7))
+      f = -(s1 + s2 + s3)/3.0_wp
+      pressure(p) = f
+      tau(p) = sqrt(0.5_wp*((s1 + f)**2 + (s2 + f)**2 + (s3 + f)**2) + s4**2 + s5**2 + s6**2)
+      t(p, 1) = s1
+      t(p, 2) = s2
+      t(p, 3) = s3
+      t(p, 4) = s4
+      t(p, 5) = s5
+      t(p, 6) = s6
+    end do
+  end subroutine turn_and_strain
 
   !> T += dt C:D, and the traces of D.
   pure subroutine add_strain(kin, n, dt, lambda, shear, gradient, stress)
@@ -327,17 +465,25 @@ contains
     real(wp), intent(in) :: stress(nstress, n)
     !> The point.
     integer :: first
-    integer :: bad, p
+    integer :: p
 
-    bad = 0
-    do p = 1, n
-      bad = bad + count(.not. abs(stress(:, p)) <= huge(1.0_wp))
-    end do
     first = 0
-    if (bad == 0) return
+    if (all_finite(nstress*n, stress)) return
     do p = n, 1, -1
       if (any(.not. abs(stress(:, p)) <= huge(1.0_wp))) first = p
     end do
   end function first_not_finite
+
+  !> Whether all of so many numbers are finite.
+  pure function all_finite(n, x) result(finite)
+    !> Number of numbers.
+    integer, intent(in) :: n
+    !> The numbers. (n)
+    real(wp), intent(in) :: x(n)
+    !> Whether they are finite.
+    logical :: finite
+
+    finite = count(.not. abs(x) <= huge(1.0_wp)) == 0
+  end function all_finite
 
 end module mpm_corotation

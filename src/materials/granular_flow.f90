@@ -8,20 +8,20 @@
 !!
 !! x1 >= 0 keeps p >= 0, and x2 <= 0 keeps p <= C (rho_s d**2 y**2 + 2 eta y) with y = g - K_4 x2
 !! and C = (a phi/(phi_m - phi))**2 where phi is below a gate. All of it is one equation for g: for
-!! each g there is one p, and tau - strength falls from g = 0 to tau = 0.
+!! each g there is one p, and tau - strength falls from g = 0 to tau = 0. Only in packings that rest
+!! and yet liquefy, mu_1 < K_3 (phi_m - phi), it may rise in between and have three roots; which one
+!! is found depends on where the search starts, at the shear rate and pressure of the last step.
 module mpm_granular_flow
   use mpm_bracket, only: bracket_t
+  use mpm_granular_step, only: granular_step_t, least_shear, rest_or_pull, search_in_step, &
+                               suspend_in_step, width
   use mpm_kinds, only: wp
   implicit none
   private
   public :: granular_flow_t
 
-  !> Values of a search that many points make in step.
-  integer, parameter :: lockstep = 24
   !> Missing shear stress over the trial stress at which a point is found.
   real(wp), parameter :: tolerance = 1.0e-13_wp
-  !> Change of the square root of a pressure after which one more step of Newton is exact.
-  real(wp), parameter :: near = 1.0e-9_wp
   !> Values until the search counts as failed; halving an interval to nothing takes some 1100.
   integer, parameter :: patience = 2000
 
@@ -119,9 +119,9 @@ contains
 
   !> Bring the trial states of a block of points back.
   !!
-  !! The search of `solve`, in step for all points that flow, from the shear rates of the last step.
-  !! Points in which a loose packing has to be searched for as well, and the few that are not found
-  !! in step, are left to `solve`.
+  !! The solutions of `solve`, in step for all points: those in closed form, and the others from the
+  !! shear rates and pressures of the last step. Points whose packing is loose and compacts, and the
+  !! few that are not found in step, are left to `solve`.
   pure subroutine granular_flow_solve_block(self, n, dt, viscosity, slope, critical, gate, phi, &
                                             p_trial, tau_trial, p, tau, rate, first_bad)
     !> The law.
@@ -144,227 +144,126 @@ contains
     real(wp), intent(in) :: p_trial(n)
     !> Trial shear stresses. [Pa] (n)
     real(wp), intent(in) :: tau_trial(n)
-    !> Pressures. [Pa] (n)
-    real(wp), intent(out) :: p(n)
+    !> Pressures, of the last step on entry. [Pa] (n)
+    real(wp), intent(inout) :: p(n)
     !> Shear stresses. [Pa] (n)
     real(wp), intent(out) :: tau(n)
     !> Plastic shear rates, of the last step on entry. [1/s] (n)
     real(wp), intent(inout) :: rate(n)
     !> First point without a solution; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: p_found(n), tau_found(n), guess(n)
-    type(granular_flow_t) :: law
-    integer :: list(n), m, i, k
-    logical :: found(n), good
+    integer :: a, m
 
-    m = 0
     first_bad = 0
-    do i = 1, n
-      if (phi(i) < gate(i) .and. self%compaction > 0.0_wp) then
-        law = law_of(i)
-        call law%solve(dt, phi(i), p_trial(i), tau_trial(i), p(i), tau(i), rate(i), good)
-        if (.not. good .and. first_bad == 0) first_bad = i
-        cycle
-      end if
-      p(i) = max(0.0_wp, p_trial(i))
-      if (phi(i) < gate(i)) p(i) = 0.0_wp
-      tau(i) = tau_trial(i)
-      if (tau(i) > max(0.0_wp, self%friction + self%dilation*(phi(i) - critical(i)))*p(i)) then
-        m = m + 1
-        list(m) = i
-      else
-        rate(i) = 0.0_wp
-      end if
+    do a = 1, n, width
+      m = min(width, n - a + 1)
+      call solve_some(self, m, dt, viscosity(a), slope(a), critical(a), gate(a), phi(a), &
+                      p_trial(a), tau_trial(a), p(a), tau(a), rate(a), first_bad)
+      if (first_bad == 0) cycle
+      first_bad = first_bad + a - 1
+      return
     end do
-    if (m == 0) return
-    guess(:m) = rate(list(:m))
-    call search_in_step(self, m, dt, viscosity(list(:m)), slope(list(:m)), critical(list(:m)), &
-                        gate(list(:m)), phi(list(:m)), p_trial(list(:m)), tau_trial(list(:m)), &
-                        guess(:m), p_found(:m), tau_found(:m), found(:m))
-    do k = 1, m
-      i = list(k)
-      if (found(k)) then
-        p(i) = p_found(k)
-        tau(i) = tau_found(k)
-        rate(i) = guess(k)
-      else
-        law = law_of(i)
-        call law%solve(dt, phi(i), p_trial(i), tau_trial(i), p(i), tau(i), rate(i), good)
-        if (.not. good .and. first_bad == 0) first_bad = i
-      end if
-    end do
-
-  contains
-
-    !> The law of a point.
-    pure function law_of(point) result(law)
-      !> The point.
-      integer, intent(in) :: point
-      !> Its law.
-      type(granular_flow_t) :: law
-
-      law = self
-      law%viscosity = viscosity(point)
-      law%slope = slope(point)
-      law%critical = critical(point)
-      law%gate = gate(point)
-    end function law_of
-
   end subroutine granular_flow_solve_block
 
-  !> Search the shear rates of points in step: false position with the weights of Anderson and
-  !! Bjorck.
-  pure subroutine search_in_step(law, m, dt, eta, incline, critical, gate, phi, p_trial, &
-                                 tau_trial, x, p, tau, found)
+  !> Bring the trial states of so many points back that work arrays have a fixed size.
+  pure subroutine solve_some(self, n, dt, viscosity, slope, critical, gate, phi, p_trial, &
+                             tau_trial, p, tau, rate, first_bad)
     !> The law.
-    class(granular_flow_t), intent(in) :: law
-    !> Number of points.
-    integer, intent(in) :: m
+    class(granular_flow_t), intent(in) :: self
+    !> Number of points, at most `width`.
+    integer, intent(in) :: n
     !> Time step. [s]
     real(wp), intent(in) :: dt
-    !> Viscosities. [Pa s] (m)
-    real(wp), intent(in) :: eta(m)
-    !> Slopes a of the packing law. (m)
-    real(wp), intent(in) :: incline(m)
-    !> Critical packing fractions. (m)
-    real(wp), intent(in) :: critical(m)
-    !> Packing fractions from which grains carry pressure at rest. (m)
-    real(wp), intent(in) :: gate(m)
-    !> Packing fractions. (m)
-    real(wp), intent(in) :: phi(m)
-    !> Trial pressures. [Pa] (m)
-    real(wp), intent(in) :: p_trial(m)
-    !> Trial shear stresses. [Pa] (m)
-    real(wp), intent(in) :: tau_trial(m)
-    !> Shear rates, guesses on entry. [1/s] (m)
-    real(wp), intent(inout) :: x(m)
-    !> Pressures. [Pa] (m)
-    real(wp), intent(out) :: p(m)
-    !> Shear stresses. [Pa] (m)
-    real(wp), intent(out) :: tau(m)
-    !> Whether a point has its solution. (m)
-    logical, intent(out) :: found(m)
-    real(wp) :: a(m), b(m), fa(m), fb(m), f(m), moved(m), weight, next, steep
-    integer :: i, k
-    logical :: up
+    !> Viscosities. [Pa s] (n)
+    real(wp), intent(in) :: viscosity(n)
+    !> Slopes of the packing law. (n)
+    real(wp), intent(in) :: slope(n)
+    !> Critical packing fractions. (n)
+    real(wp), intent(in) :: critical(n)
+    !> Packing fractions from which grains carry pressure at rest. (n)
+    real(wp), intent(in) :: gate(n)
+    !> Packing fractions. (n)
+    real(wp), intent(in) :: phi(n)
+    !> Trial pressures. [Pa] (n)
+    real(wp), intent(in) :: p_trial(n)
+    !> Trial shear stresses. [Pa] (n)
+    real(wp), intent(in) :: tau_trial(n)
+    !> Pressures, of the last step on entry. [Pa] (n)
+    real(wp), intent(inout) :: p(n)
+    !> Shear stresses. [Pa] (n)
+    real(wp), intent(out) :: tau(n)
+    !> Plastic shear rates, of the last step on entry. [1/s] (n)
+    real(wp), intent(inout) :: rate(n)
+    !> First point without a solution; 0 when there is none.
+    integer, intent(out) :: first_bad
+    real(wp) :: known(width), p_known(width), rate_known(width), largest(width)
+    type(granular_step_t) :: step
+    type(granular_flow_t) :: law
+    integer :: list(width), m, i
+    logical :: good
 
-    steep = 1.0_wp/(law%shear*dt)
-    a = 0.0_wp
-    b = tau_trial*steep
-    call missing_strength(law, m, dt, eta, incline, critical, gate, phi, p_trial, tau_trial, &
-                          a, p, tau, fa)
-    call missing_strength(law, m, dt, eta, incline, critical, gate, phi, p_trial, tau_trial, &
-                          b, p, tau, fb)
-    moved = 0.0_wp
-    do i = 1, m
-      ! Without strength at the other end there is none left, as in `solve`.
-      if (.not. fb(i) < 0.0_wp) x(i) = b(i)
-      found(i) = .not. (fa(i) > 0.0_wp .and. x(i) > 0.0_wp .and. x(i) < b(i))
-      if (found(i) .and. fb(i) < 0.0_wp .and. fa(i) > 0.0_wp) then
-        x(i) = b(i)*(fa(i)/(fa(i) - fb(i)))
+    first_bad = 0
+    step = step_of(self, dt)
+    call rest_or_pull(step, n, critical, gate, phi, p_trial, tau_trial, rate_known, p_known, known)
+    if (any(phi < gate)) then
+      if (self%compaction > 0.0_wp) then
+        where (phi < gate .and. max(p_trial, tau_trial) > least_shear) known(:n) = -1.0_wp
+      else
+        call suspend_in_step(step, n, viscosity, slope, critical, gate, phi, p_trial, tau_trial, &
+                             rate_known, p_known, known)
+      end if
+    end if
+    m = 0
+    do i = 1, n
+      if (known(i) > 0.0_wp) then
+        rate(i) = rate_known(i)
+        p(i) = p_known(i)
+      else if (.not. known(i) < 0.0_wp) then
+        m = m + 1
+        list(m) = i
       end if
     end do
-    ! Those with a guess take the steepest elastic step from it, which ends beyond the solution.
-    call missing_strength(law, m, dt, eta, incline, critical, gate, phi, p_trial, tau_trial, &
-                          x, p, tau, f)
-    do k = 1, lockstep
-      do i = 1, m
-        up = f(i) > 0.0_wp
-        next = x(i) + f(i)*steep
-        weight = merge(1.0_wp - f(i)/merge(fa(i), 1.0_wp, fa(i) > 0.0_wp), &
-                       1.0_wp - f(i)/merge(fb(i), -1.0_wp, fb(i) < 0.0_wp), up)
-        weight = merge(weight, 0.5_wp, weight > 0.0_wp)
-        weight = merge(weight, 1.0_wp, merge(moved(i), -moved(i), up) > 0.0_wp)
-        fb(i) = merge(weight*fb(i), f(i), up)
-        fa(i) = merge(f(i), weight*fa(i), up)
-        a(i) = merge(x(i), a(i), up)
-        b(i) = merge(b(i), x(i), up)
-        moved(i) = merge(1.0_wp, -1.0_wp, up)
-        if (k > 1 .or. found(i)) then
-          next = a(i) + (b(i) - a(i))*(fa(i)/merge(fa(i) - fb(i), 1.0_wp, fa(i) > fb(i)))
-        end if
-        next = merge(next, 0.5_wp*(a(i) + b(i)), next > a(i) .and. next < b(i))
-        x(i) = merge(x(i), next, abs(f(i)) <= tolerance*max(abs(p_trial(i)), tau_trial(i)))
-      end do
-      call missing_strength(law, m, dt, eta, incline, critical, gate, phi, p_trial, tau_trial, &
-                          x, p, tau, f)
-      found = abs(f) <= tolerance*max(abs(p_trial), tau_trial)
-      if (all(found)) exit
-    end do
+    if (m > 0) then
+      call search_in_step(step, n, m, list, viscosity, slope, critical, phi, p_trial, tau_trial, &
+                          rate, p, known)
+    end if
     ! Nothing is left at the largest rate, but for a rounding.
-    tau = merge(tau, 0.0_wp, x < tau_trial*steep)
-  end subroutine search_in_step
+    do i = 1, n
+      largest(i) = tau_trial(i)/step%shear
+      tau(i) = max(0.0_wp, tau_trial(i) - step%shear*rate(i))
+    end do
+    do i = 1, n
+      tau(i) = merge(tau(i), 0.0_wp, rate(i) < largest(i))
+    end do
+    do i = 1, n
+      if (known(i) > 0.0_wp) cycle
+      law = self
+      law%viscosity = viscosity(i)
+      law%slope = slope(i)
+      law%critical = critical(i)
+      law%gate = gate(i)
+      call law%solve(dt, phi(i), p_trial(i), tau_trial(i), p(i), tau(i), rate(i), good)
+      if (.not. good .and. first_bad == 0) first_bad = i
+    end do
+  end subroutine solve_some
 
-  !> Shear stresses less strengths of plastic shear rates, for many points at a time.
-  pure subroutine missing_strength(law, m, dt, eta, incline, critical, gate, phi, p_trial, &
-                                   tau_trial, rate, p, tau, missing)
+  !> What of a law is the same for all points of a step.
+  pure function step_of(law, dt) result(step)
     !> The law.
     class(granular_flow_t), intent(in) :: law
-    !> Number of points.
-    integer, intent(in) :: m
     !> Time step. [s]
     real(wp), intent(in) :: dt
-    !> Viscosities. [Pa s] (m)
-    real(wp), intent(in) :: eta(m)
-    !> Slopes a of the packing law. (m)
-    real(wp), intent(in) :: incline(m)
-    !> Critical packing fractions. (m)
-    real(wp), intent(in) :: critical(m)
-    !> Packing fractions from which grains carry pressure at rest. (m)
-    real(wp), intent(in) :: gate(m)
-    !> Packing fractions. (m)
-    real(wp), intent(in) :: phi(m)
-    !> Trial pressures. [Pa] (m)
-    real(wp), intent(in) :: p_trial(m)
-    !> Trial shear stresses. [Pa] (m)
-    real(wp), intent(in) :: tau_trial(m)
-    !> Plastic shear rates. [1/s] (m)
-    real(wp), intent(in) :: rate(m)
-    !> Pressures. [Pa] (m)
-    real(wp), intent(out) :: p(m)
-    !> Shear stresses. [Pa] (m)
-    real(wp), intent(out) :: tau(m)
-    !> tau - strength. [Pa] (m)
-    real(wp), intent(out) :: missing(m)
-    real(wp) :: c(m), s(m), top(m), push(m), ac, value, slope, next, worst, bound
-    integer :: i, k
+    !> Its constants.
+    type(granular_step_t) :: step
 
-    do i = 1, m
-      c(i) = sqrt(law%grain_density*(law%diameter*rate(i))**2 + 2.0_wp*eta(i)*rate(i))
-      push(i) = law%bulk*dt*law%dilation*rate(i)
-      top(i) = max(0.0_wp, p_trial(i) + push(i)*phi(i))
-      s(i) = sqrt(top(i))
-    end do
-    ! As in `pressure`.
-    do k = 1, 100
-      worst = 0.0_wp
-      do i = 1, m
-        ac = s(i) + incline(i)*c(i)
-        value = (s(i)*s(i) - top(i))*ac + push(i)*critical(i)*s(i)
-        slope = 2.0_wp*s(i)*ac + (s(i)*s(i) - top(i)) + push(i)*critical(i)
-        next = s(i) - value/merge(slope, 1.0_wp, slope > 0.0_wp)
-        next = merge(max(0.0_wp, min(s(i), next)), s(i), slope > 0.0_wp)
-        worst = max(worst, s(i) - next - near*s(i))
-        s(i) = next
-      end do
-      if (worst <= 0.0_wp) exit
-    end do
-    do i = 1, m
-      bound = (incline(i)*phi(i)/merge(critical(i) - phi(i), 1.0_wp, phi(i) < gate(i)))**2
-      p(i) = s(i)*s(i)
-      p(i) = merge(min(p(i), bound*c(i)*c(i)), p(i), phi(i) < gate(i))
-      s(i) = sqrt(p(i))
-      ac = merge(c(i)*s(i), 1.0_wp, c(i) > 0.0_wp .and. s(i) > 0.0_wp)
-      value = s(i)/merge(s(i) + incline(i)*c(i), 1.0_wp, s(i) > 0.0_wp)
-      value = law%friction + law%dilation*(phi(i) - critical(i)*value)
-      slope = (law%fast_friction - law%friction)*c(i)/merge(c(i) + law%inertial*s(i), 1.0_wp, &
-                                                            c(i) > 0.0_wp)
-      next = 2.5_wp*phi(i)*rate(i)*eta(i)/(incline(i)*ac)
-      value = value + merge(slope + next, 0.0_wp, c(i) > 0.0_wp)
-      tau(i) = max(0.0_wp, tau_trial(i) - law%shear*dt*rate(i))
-      missing(i) = tau(i) - max(0.0_wp, value*p(i))
-    end do
-  end subroutine missing_strength
+    step%shear = law%shear*dt
+    step%bulk = law%bulk*dt
+    step%friction = law%friction
+    step%rise = law%fast_friction - law%friction
+    step%inertial = law%inertial
+    step%dilation = law%dilation
+    step%inertia = law%grain_density*law%diameter**2
+  end function step_of
 
   !> Pressure of a plastic shear rate.
   !!

@@ -1,7 +1,7 @@
 !> Dry granular flow with the local mu(I) law.
 module mpm_sand_sachith_local
-  use mpm_corotation, only: add_strain, elastic_energy, first_not_finite, invariants, rebuild, &
-                            shear_rates, spin_stress
+  use mpm_corotation, only: elastic_energy, first_not_finite, invariants, rebuild, shear_rates, &
+                            trial_stress
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
@@ -173,9 +173,7 @@ contains
     real(wp) :: pressure(n), tau(n), flow(n), wanted(n), factor(n), rate(n)
     integer :: p, n_open
 
-    call spin_stress(self%kin, n, dt, gradient, stress)
-    call add_strain(self%kin, n, dt, self%lambda, self%shear, gradient, stress)
-    call invariants(self%kin%nstress, n, stress, pressure, tau)
+    call trial_stress(self%kin, n, dt, self%lambda, self%shear, gradient, stress, pressure, tau)
     wanted = pressure
     if (self%by_density) then
       wanted = (self%lambda + 2.0_wp*self%shear/3.0_wp)*(mass/volume/self%critical_density - 1.0_wp)

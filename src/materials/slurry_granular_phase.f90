@@ -1,11 +1,11 @@
 !> The grains of a mixture with a fluid, or dry.
 module mpm_slurry_granular_phase
-  use mpm_corotation, only: add_strain, elastic_energy, first_not_finite, invariants, rebuild, &
-                            spin_stress
+  use mpm_corotation, only: elastic_energy, first_not_finite, invariants, rebuild, trial_stress
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
   use mpm_granular_flow, only: granular_flow_t
+  use mpm_granular_step, only: width
   use mpm_grid, only: grid_t
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
@@ -247,27 +247,61 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a stress; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: trial(n), tau(n), factor(n), pressure(n), kept(n), phi(n), rate(n), viscosity(n)
+    integer :: a
 
-    call spin_stress(self%kin, n, dt, gradient, stress)
-    call add_strain(self%kin, n, dt, self%law%bulk - 2.0_wp*self%law%shear/3.0_wp, self%law%shear, &
-                    gradient, stress)
-    call invariants(self%kin%nstress, n, stress, trial, tau)
-    first_bad = first_not_finite(1, n, trial + tau)
-    if (first_bad > 0) return
-    phi = mass/(volume*self%law%grain_density)
-    rate = history(2, :)
-    viscosity = history(self%at_viscosity, :)
-    call self%law%solve_block(n, dt, viscosity, spread(self%law%slope, 1, n), &
-                              spread(self%law%critical, 1, n), spread(self%law%gate, 1, n), phi, &
-                              trial, tau, pressure, kept, rate, first_bad)
-    if (first_bad > 0) return
-    factor = 1.0_wp
-    where (tau > 0.0_wp) factor = kept/tau
-    history(2, :) = rate
-    history(1, :) = history(1, :) + dt*rate
-    call rebuild(self%kin%nstress, n, trial, factor, pressure, stress)
+    first_bad = 0
+    do a = 1, n, width
+      call advance(self, min(width, n - a + 1), dt, gradient(1, a), mass(a), volume(a), &
+                   stress(1, a), history(1, a), first_bad)
+      if (first_bad == 0) cycle
+      first_bad = first_bad + a - 1
+      return
+    end do
   end subroutine slurry_granular_phase_update_stress
+
+  !> Advance the stress of so many points that work arrays have a fixed size.
+  pure subroutine advance(self, n, dt, gradient, mass, volume, stress, history, first_bad)
+    !> The material.
+    class(slurry_granular_phase_t), intent(in) :: self
+    !> Number of points, at most `width`.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients of the step. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(self%kin%ngrad, n)
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes at the end of the step. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(self%kin%nstress, n)
+    !> Plastic shear strain, its rate, viscosity. [-, 1/s, Pa s] (3, n)
+    real(wp), intent(inout) :: history(self%n_history, n)
+    !> First point without a stress; 0 when there is none.
+    integer, intent(out) :: first_bad
+    real(wp), dimension(width) :: trial, tau, pressure, kept, phi, rate, viscosity, factor
+    real(wp), dimension(width) :: slope, critical, gate
+
+    pressure(:n) = -(stress(1, :) + stress(2, :) + stress(3, :))/3.0_wp
+    call trial_stress(self%kin, n, dt, self%law%bulk - 2.0_wp*self%law%shear/3.0_wp, &
+                      self%law%shear, gradient, stress, trial, tau)
+    factor(:n) = trial(:n) + tau(:n)
+    first_bad = first_not_finite(1, n, factor)
+    if (first_bad > 0) return
+    phi(:n) = mass/(volume*self%law%grain_density)
+    rate(:n) = history(2, :)
+    viscosity(:n) = history(self%at_viscosity, :)
+    slope = self%law%slope
+    critical = self%law%critical
+    gate = self%law%gate
+    call self%law%solve_block(n, dt, viscosity, slope, critical, gate, phi, trial, tau, pressure, &
+                              kept, rate, first_bad)
+    if (first_bad > 0) return
+    factor(:n) = kept(:n)/max(tau(:n), tiny(1.0_wp))
+    history(2, :) = rate(:n)
+    history(1, :) = history(1, :) + dt*rate(:n)
+    call rebuild(self%kin%nstress, n, trial, factor, pressure, stress)
+  end subroutine advance
 
   !> Give points a stress, where they can have it: its shear is cut to the static strength.
   pure subroutine slurry_granular_phase_assign_stress(self, n, target, mass, volume, stress, &

@@ -40,7 +40,8 @@ contains
     call description%add_real('phi_c', '-', 'loosest packing fraction at rest, at most phi_m', &
                               above=0.0_wp, upper=1.0_wp)
     call description%add_note('Static liquefaction, mu_1 < K_3 (phi_m - phi), keeps the pressure; &
-                              &mpm_3d deletes it.')
+                              &mpm_3d deletes it. The plastic step can then have three solutions; &
+                              &its search starts from the rate and pressure of the last step.')
   end subroutine with_under_compaction_describe
 
   !> Set the constants from the properties.
