@@ -19,10 +19,10 @@ SHORT = 5
 GUESS = 60e-9
 #: Seconds between two looks at a process that runs.
 POLL = 0.002
-#: Simulated time of a run at most: blocks of few points would fall to the floor. [s]
-DURATION = 0.05
 #: Frames per second of simulated time with which the share of the frames is stated. [1/s]
 FRAME_RATE = 60.0
+#: Frames from which their time is taken, at most, and points in all of them.
+FRAMES, FRAME_POINTS = 10, 1_000_000
 
 
 class BenchError(Exception):
@@ -90,6 +90,12 @@ def phases(text: str) -> dict[str, float]:
     return {name: float(seconds) for name, seconds in rows}
 
 
+def frames_of(text: str) -> int:
+    """Frames that the program says it has written."""
+    found = re.findall(r"^frames: +(\d+) in ", text, re.M)
+    return int(found[-1]) if found else 1
+
+
 def stated_memory(text: str) -> float:
     """Bytes of points and nodes that the program states."""
     found = re.search(r"^memory: +(\S+) MB for points and nodes", text, re.M)
@@ -101,7 +107,7 @@ def measure(
 ) -> dict[str, object]:
     """Measure one case; `clock` is `wall` or `cpu`."""
     per_step = GUESS * case.points
-    steps = SHORT + max(10, min(round(seconds / per_step), int(DURATION / case.dt)))
+    steps = SHORT + max(10, min(round(seconds / per_step), int(case.scene.duration / case.dt)))
     samples, set_up, memory = [], [], 0
     for _ in range(repeat):
         low = run(command_of(program, case, SHORT, threads, "-q"), case.folder)
@@ -111,13 +117,15 @@ def measure(
         samples.append(1e9 * spent / ((steps - SHORT) * case.points))
         set_up.append(check.wall)
         memory = max(memory, high.memory)
-    told = run(command_of(program, case, steps, threads, "-v"), case.folder).text
+    wanted = min(FRAMES, max(1, FRAME_POINTS // case.points))
+    rate = f"serializer.properties={{{wanted / (steps * case.dt)!r}}}"
+    told = run(command_of(program, case, steps, threads, "-v", "--set", rate), case.folder).text
     table = phases(told)
     loop = {name: s for name, s in table.items() if name not in ("set-up", "output")}
     total = sum(loop.values())
     # One frame against the steps until the next one.
     between = total / steps / (FRAME_RATE * case.dt)
-    frame = table.get("output", 0.0)
+    frame = table.get("output", 0.0) / frames_of(told)
     return {
         "scene": case.scene.name,
         "points": case.points,

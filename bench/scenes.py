@@ -36,6 +36,11 @@ class Scene:
     sheared: bool = False
 
     @property
+    def duration(self) -> float:
+        """Simulated time of a run at most: blocks of few points would reach the floor. [s]"""
+        return 0.015 if self.sheared else 0.05
+
+    @property
     def classes(self) -> list[str]:
         """Classes that a program must have to run the scene."""
         return [self.grid, self.solver, self.material.split()[2]]
