@@ -37,7 +37,7 @@ class Scene:
 
     @property
     def duration(self) -> float:
-        """Simulated time of a run at most: blocks of few points would reach the floor. [s]"""
+        """Simulated time of a run at most, in s: blocks of few points would reach the floor."""
         return 0.015 if self.sheared else 0.05
 
     @property
