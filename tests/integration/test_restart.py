@@ -91,7 +91,9 @@ def test_all_roles_are_there() -> None:
 
 
 @pytest.mark.parametrize("case", [*CLASSES, *MORE], ids=case_name)
-def test_same_bytes(mpm3d: Run, case: Class, tmp_path: Path) -> None:
+def test_same_bytes(
+    mpm3d: Run, case: Class, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
     """Frames and other files behind the checkpoint are the same, with one and with two threads."""
     write_scene(tmp_path, case.role, case.example, save_time=(SAVED - 0.5) * DT)
     result = mpm3d("-c", "scene.cfg", cwd=tmp_path)
@@ -124,3 +126,5 @@ def test_same_bytes(mpm3d: Run, case: Class, tmp_path: Path) -> None:
         assert f"going on from step {step}, t = " in result.stdout
         assert files_of(frames) == behind
         assert files_of(tmp_path) == others
+    n_bytes = 2 * sum(map(len, behind.values()))
+    request.node.user_properties.append(("bytes compared", n_bytes))
