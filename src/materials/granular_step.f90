@@ -12,7 +12,8 @@ module mpm_granular_step
   use mpm_kinds, only: wp
   implicit none
   private
-  public :: granular_step_t, least_shear, rest_or_pull, search_in_step, suspend_in_step, width
+  public :: granular_step_t, least_shear, rest_and_compact, rest_or_pull, search_in_step
+  public :: suspend_in_step, width
 
   !> Points at a time.
   integer, parameter :: width = 128
@@ -34,12 +35,15 @@ module mpm_granular_step
   real(wp), parameter :: least_shear = 1.0e-120_wp
   !> The least that is divided by, and the largest quotient whose square is wanted.
   real(wp), parameter :: least_divisor = 1.0e-290_wp, largest_quotient = 1.0e140_wp
+  !> What takes any C above 1.
+  real(wp), parameter :: large = 1.0e30_wp
   !> Least distance of a packing from the critical one.
   real(wp), parameter :: nothing = 1.0e-20_wp
   !> Columns of the points at work: what they are given, the shear rate, the root of the pressure, 0
-  !> or, once they are found, 1, and 5/2 phi eta/a.
+  !> or, once they are found, 1, 5/2 phi eta/a, and C of compacting points.
   integer, parameter :: c_eta = 1, c_slope = 2, c_critical = 3, c_phi = 4, c_trial = 5, c_tau = 6
-  integer, parameter :: c_rate = 7, c_root = 8, c_done = 9, c_drag = 10, n_columns = 10
+  integer, parameter :: c_rate = 7, c_root = 8, c_done = 9, c_drag = 10, c_bound = 11
+  integer, parameter :: n_columns = 11
 
   !> Constants of a law over a step.
   type :: granular_step_t
@@ -57,6 +61,8 @@ module mpm_granular_step
     real(wp) :: dilation = 0.0_wp
     !> rho_s d**2. [kg/m]
     real(wp) :: inertia = 0.0_wp
+    !> Compaction over the bulk modulus times the step, K_4/(K dt). [1/(Pa s)]
+    real(wp) :: compaction = 0.0_wp
   end type granular_step_t
 
 contains
@@ -109,7 +115,7 @@ contains
   !! There beta is 0, and the balance of shear a quadratic equation. It is the solution where the
   !! free pressure of this rate is not lower.
   pure subroutine suspend_in_step(step, n, eta, slope, critical, gate, phi, p_trial, tau_trial, &
-                                  rate, p, found)
+                                  rate, p, found, bound)
     !> Constants of the law and the step.
     type(granular_step_t), intent(in) :: step
     !> Number of points.
@@ -134,6 +140,8 @@ contains
     real(wp), intent(inout) :: p(n)
     !> 1 for points that are found, 0 for others. (n)
     real(wp), intent(inout) :: found(n)
+    !> C of points that are not, since they compact; 0 for others. (n)
+    real(wp), intent(out) :: bound(n)
     real(wp) :: g(width), square(width), excess(width), ratio, drag, friction, linear, c, s, push
     integer :: i
 
@@ -155,13 +163,75 @@ contains
       excess(i) = merge(1.0_wp, excess(i), found(i) > 0.0_wp)
       rate(i) = merge(g(i), rate(i), excess(i) <= 0.0_wp)
       p(i) = merge(square(i), p(i), excess(i) <= 0.0_wp)
-      found(i) = merge(1.0_wp, found(i), excess(i) <= 0.0_wp)
+      bound(i) = 0.0_wp
     end do
+    if (step%compaction > 0.0_wp) then
+      do i = 1, n
+        ratio = slope(i)*phi(i)/max(critical(i) - phi(i), nothing)
+        square(i) = ratio*ratio
+      end do
+      do i = 1, n
+        bound(i) = merge(square(i), 0.0_wp, excess(i) <= 0.0_wp)
+      end do
+    else
+      do i = 1, n
+        found(i) = merge(1.0_wp, found(i), excess(i) <= 0.0_wp)
+      end do
+    end if
   end subroutine suspend_in_step
 
+  !> Find loose points within their static strength while they compact, p = C (rho_s d**2 y**2 +
+  !> 2 eta y), y = K_4 (p_tr - p)/(K dt).
+  pure subroutine rest_and_compact(step, n, eta, slope, critical, gate, phi, p_trial, tau_trial, &
+                                   rate, p, found)
+    !> Constants of the law and the step.
+    type(granular_step_t), intent(in) :: step
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Viscosities. [Pa s] (n)
+    real(wp), intent(in) :: eta(n)
+    !> Slopes a of the packing law. (n)
+    real(wp), intent(in) :: slope(n)
+    !> Critical packing fractions. (n)
+    real(wp), intent(in) :: critical(n)
+    !> Packing fractions from which grains carry pressure at rest. (n)
+    real(wp), intent(in) :: gate(n)
+    !> Packing fractions. (n)
+    real(wp), intent(in) :: phi(n)
+    !> Trial pressures. [Pa] (n)
+    real(wp), intent(in) :: p_trial(n)
+    !> Trial shear stresses. [Pa] (n)
+    real(wp), intent(in) :: tau_trial(n)
+    !> Plastic shear rates. [1/s] (n)
+    real(wp), intent(inout) :: rate(n)
+    !> Pressures. [Pa] (n)
+    real(wp), intent(inout) :: p(n)
+    !> 1 for points that are found, 0 for others. (n)
+    real(wp), intent(inout) :: found(n)
+    real(wp) :: square(width), over(width), ratio, linear, quadratic, y, static
+    integer :: i
+
+    do i = 1, n
+      ratio = slope(i)*phi(i)/max(critical(i) - phi(i), nothing)
+      linear = 1.0_wp + 2.0_wp*ratio*ratio*eta(i)*step%compaction
+      quadratic = step%inertia*(ratio*step%compaction)**2
+      y = max(0.0_wp, p_trial(i))
+      y = step%compaction*2.0_wp*y/(linear + sqrt(linear*linear + 4.0_wp*quadratic*y))
+      square(i) = ratio*ratio*y*(step%inertia*y + 2.0_wp*eta(i))
+      static = max(0.0_wp, step%friction + step%dilation*(phi(i) - critical(i)))
+      over(i) = tau_trial(i) - max(static*square(i), least_shear)
+    end do
+    do i = 1, n
+      over(i) = merge(over(i), 1.0_wp, phi(i) < gate(i))
+      rate(i) = merge(0.0_wp, rate(i), over(i) <= 0.0_wp)
+      p(i) = merge(square(i), p(i), over(i) <= 0.0_wp)
+      found(i) = merge(1.0_wp, found(i), over(i) <= 0.0_wp)
+    end do
+  end subroutine rest_and_compact
+
   !> Search the points of a list, from rates and pressures that may be close.
-  pure subroutine search_in_step(step, n, m, list, eta, slope, critical, phi, p_trial, tau_trial, &
-                                 rate, p, found)
+  pure subroutine search_in_step(step, n, m, list, eta, slope, critical, phi, bound, p_trial, &
+                                 tau_trial, rate, p, found)
     !> Constants of the law and the step.
     type(granular_step_t), intent(in) :: step
     !> Number of points, at most `width`.
@@ -178,6 +248,8 @@ contains
     real(wp), intent(in) :: critical(n)
     !> Packing fractions. (n)
     real(wp), intent(in) :: phi(n)
+    !> C of points that compact; 0 for others. (n)
+    real(wp), intent(in) :: bound(n)
     !> Trial pressures. [Pa] (n)
     real(wp), intent(in) :: p_trial(n)
     !> Trial shear stresses. [Pa] (n)
@@ -203,6 +275,7 @@ contains
       work(k, c_rate) = rate(i)
       work(k, c_root) = p(i)
       work(k, c_done) = 0.0_wp
+      work(k, c_bound) = bound(i)
     end do
     left = m
     call fill(left, work, full)
@@ -212,7 +285,7 @@ contains
     do k = 1, patience
       call newton(step, full, work(:, c_eta), work(:, c_slope), work(:, c_critical), &
                   work(:, c_phi), work(:, c_trial), work(:, c_tau), work(:, c_rate), &
-                  work(:, c_root), work(:, c_drag), work(:, c_done))
+                  work(:, c_root), work(:, c_drag), work(:, c_bound), work(:, c_done))
       j = 0
       do i = 1, left
         if (work(i, c_done) > 0.0_wp) j = j + 1
@@ -335,7 +408,7 @@ contains
 
   !> One step of Newton of all points that are not found yet.
   pure subroutine newton(step, m, eta, slope, critical, phi, p_trial, tau_trial, rate, root, &
-                         drag, done)
+                         drag, bound, done)
     !> Constants of the law and the step.
     type(granular_step_t), intent(in) :: step
     !> Number of points.
@@ -358,11 +431,13 @@ contains
     real(wp), intent(inout) :: root(m)
     !> 5/2 phi eta/a. [Pa s] (m)
     real(wp), intent(in) :: drag(m)
+    !> C of points that compact; 0 for others. (m)
+    real(wp), intent(in) :: bound(m)
     !> 1 for points that are found, which stay as they are. (m)
     real(wp), intent(inout) :: done(m)
     real(wp) :: new_rate(width), new_root(width), left(width), g, s, c, p, packed, rubbed, over, all
     real(wp) :: beta, beta_g, beta_s, mu, mu_g, mu_s, viscous, y, y_g, y_s, v, v_g, v_s, missing
-    real(wp) :: det, dg, ds, largest
+    real(wp) :: det, dg, ds, largest, excess, loose, swept, dp
     integer :: i
 
     largest = 1.0_wp/step%shear
@@ -396,6 +471,14 @@ contains
       v = p_trial(i) + step%bulk*g*beta - p
       v_g = step%bulk*(beta + g*beta_g)
       v_s = step%bulk*g*beta_s - 2.0_wp*s
+      ! Where they compact, v over K dt is -x2, and p has its bound.
+      loose = min(1.0_wp, bound(i)*large)
+      excess = -loose*v
+      swept = g + step%compaction*v
+      dp = 2.0_wp*bound(i)*(step%inertia*swept + eta(i))
+      v = (1.0_wp - loose)*v + loose*(bound(i)*swept*(step%inertia*swept + 2.0_wp*eta(i)) - p)
+      v_g = (1.0_wp - loose)*v_g + loose*dp*(1.0_wp + step%compaction*v_g)
+      v_s = (1.0_wp - loose)*v_s + loose*(dp*step%compaction*v_s - 2.0_wp*s)
       ! Cramer's rule. `missing` is -v_s times the shear stress that is missing where v is 0.
       missing = y_s*v - y*v_s
       det = y_g*v_s - y_s*v_g
@@ -404,7 +487,8 @@ contains
       ds = (v_g*y - y_g*v)*det
       left(i) = max(abs(missing) + tolerance*v_s*max(abs(p_trial(i)), tau_trial(i)), &
                     abs(dg) - 0.5_wp*g)
-      left(i) = max(min(left(i), abs(dg) - near*g), abs(ds) - near*s, least_divisor - all)
+      left(i) = max(min(left(i), abs(dg) - near*g), abs(ds) - near*s, least_divisor - all, &
+                    excess - tolerance*max(abs(p_trial(i)), tau_trial(i)))
       new_rate(i) = min(min(max(g + dg, least*g), most*g), largest*tau_trial(i))
       new_root(i) = min(max(s + ds, least*s), most*s)
     end do
