@@ -13,8 +13,9 @@
 !! is found depends on where the search starts, at the shear rate and pressure of the last step.
 module mpm_granular_flow
   use mpm_bracket, only: bracket_t
-  use mpm_granular_step, only: granular_step_t, rest_and_compact, rest_or_pull, search_in_step, &
-                               suspend_in_step, width
+  use mpm_granular_newton, only: search_in_step
+  use mpm_granular_step, only: granular_step_t, rest_and_compact, rest_or_pull, suspend_in_step, &
+                               width
   use mpm_kinds, only: wp
   implicit none
   private
