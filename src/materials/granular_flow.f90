@@ -13,8 +13,9 @@
 !! is found depends on where the search starts, at the shear rate and pressure of the last step.
 module mpm_granular_flow
   use mpm_bracket, only: bracket_t
-  use mpm_granular_step, only: granular_step_t, least_shear, rest_or_pull, search_in_step, &
-                               suspend_in_step, width
+  use mpm_granular_newton, only: search_in_step
+  use mpm_granular_step, only: granular_step_t, rest_and_compact, rest_or_pull, suspend_in_step, &
+                               width
   use mpm_kinds, only: wp
   implicit none
   private
@@ -120,8 +121,7 @@ contains
   !> Bring the trial states of a block of points back.
   !!
   !! The solutions of `solve`, in step for all points: those in closed form, and the others from the
-  !! shear rates and pressures of the last step. Points whose packing is loose and compacts, and the
-  !! few that are not found in step, are left to `solve`.
+  !! shear rates and pressures of the last step. The few that are not found are left to `solve`.
   pure subroutine granular_flow_solve_block(self, n, dt, viscosity, slope, critical, gate, phi, &
                                             p_trial, tau_trial, p, tau, rate, first_bad)
     !> The law.
@@ -196,7 +196,7 @@ contains
     real(wp), intent(inout) :: rate(n)
     !> First point without a solution; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: known(width), p_known(width), rate_known(width), largest(width)
+    real(wp) :: known(width), p_known(width), rate_known(width), bound(width), largest(width)
     type(granular_step_t) :: step
     type(granular_flow_t) :: law
     integer :: list(width), m, i
@@ -205,27 +205,28 @@ contains
     first_bad = 0
     step = step_of(self, dt)
     call rest_or_pull(step, n, critical, gate, phi, p_trial, tau_trial, rate_known, p_known, known)
+    bound(:n) = 0.0_wp
     if (any(phi < gate)) then
       if (self%compaction > 0.0_wp) then
-        where (phi < gate .and. max(p_trial, tau_trial) > least_shear) known(:n) = -1.0_wp
-      else
-        call suspend_in_step(step, n, viscosity, slope, critical, gate, phi, p_trial, tau_trial, &
-                             rate_known, p_known, known)
+        call rest_and_compact(step, n, viscosity, slope, critical, gate, phi, p_trial, tau_trial, &
+                              rate_known, p_known, known)
       end if
+      call suspend_in_step(step, n, viscosity, slope, critical, gate, phi, p_trial, tau_trial, &
+                           rate_known, p_known, known, bound)
     end if
     m = 0
     do i = 1, n
-      if (known(i) > 0.0_wp) then
+      if (known(i) > 0.0_wp .or. (bound(i) > 0.0_wp .and. .not. (rate(i) > 0.0_wp))) then
         rate(i) = rate_known(i)
         p(i) = p_known(i)
-      else if (.not. known(i) < 0.0_wp) then
-        m = m + 1
-        list(m) = i
       end if
+      if (known(i) > 0.0_wp) cycle
+      m = m + 1
+      list(m) = i
     end do
     if (m > 0) then
-      call search_in_step(step, n, m, list, viscosity, slope, critical, phi, p_trial, tau_trial, &
-                          rate, p, known)
+      call search_in_step(step, n, m, list, viscosity, slope, critical, phi, bound, p_trial, &
+                          tau_trial, rate, p, known)
     end if
     ! Nothing is left at the largest rate, but for a rounding.
     do i = 1, n
@@ -263,6 +264,7 @@ contains
     step%inertial = law%inertial
     step%dilation = law%dilation
     step%inertia = law%grain_density*law%diameter**2
+    step%compaction = law%compaction/step%bulk
   end function step_of
 
   !> Pressure of a plastic shear rate.
