@@ -195,7 +195,7 @@ contains
       v = state(i, 3) - 1.0_wp
       mean = third*(x + y + v)
       level(i, of_ev) = 1.5_wp*mean
-      z(i) = max(0.0_wp, -1.5_wp*mean)/smooth
+      z(i) = max(0.0_wp, -1.5_wp*mean)*(1.0_wp/smooth)
       x = 0.5_wp*(x - mean)
       y = 0.5_wp*(y - mean)
       v = 0.5_wp*(v - mean)
@@ -244,10 +244,13 @@ contains
     real(wp), intent(in) :: state(width, n_state)
     !> What is known of them.
     real(wp), intent(inout) :: level(width, n_level)
-    real(wp) :: g, on, scale, h, w, a, j, s, c, phi
+    real(wp) :: g, g6, compliance, on, scale, h, w, a, j, s, c, phi
     integer :: i
 
+    ! Divisions are slow: none by a constant of the loop.
     g = sqrt(3.0_wp*self%bulk*self%shear)
+    g6 = g/6.0_wp
+    compliance = 2.0_wp/(3.0_wp*self%bulk)
     do i = 1, n
       a = level(i, of_a)
       j = level(i, of_j)
@@ -256,11 +259,11 @@ contains
       scale = on*scale
       h = max(0.0_wp, -level(i, of_ev))
       h = 0.5_wp*self%bulk*h/(smooth + h)
-      s = scale*h*((2.0_wp/self%bulk)*a*a + self%shear*j)
+      s = scale*h*(3.0_wp*compliance*a*a + self%shear*j)
       c = 2.0_wp*scale*self%shear*(a + 0.25_wp*g*level(i, of_es))
       level(i, of_s) = s
       level(i, of_c) = c
-      phi = (2.0_wp/3.0_wp)*a*a*a/self%bulk + self%shear*j*(a + g/6.0_wp*level(i, of_es))
+      phi = compliance*a*a*a + self%shear*j*(a + g6*level(i, of_es))
       level(i, of_phi) = on*phi
       w = 1.0_wp + (2.0_wp/3.0_wp)*level(i, of_ev)
       level(i, of_p) = s*w - (2.0_wp/3.0_wp)*c*j
@@ -311,7 +314,8 @@ contains
       bound = max(self%friction + level(i, of_dilatancy), weakest*self%friction)*p
       level(i, of_bound) = bound
       bound = on*bound + (1.0_wp - on)
-      y = on*(level(i, of_free) + level(i, of_square)/bound/bound - 2.0_wp) + 2.0_wp
+      bound = 1.0_wp/bound
+      y = on*(level(i, of_free) + level(i, of_square)*bound*bound - 2.0_wp) + 2.0_wp
       level(i, of_y) = above_zero(max(level(i, of_square), abs(p)))*y - 1.0_wp
     end do
   end subroutine find_yields
@@ -360,11 +364,12 @@ contains
     real(wp), intent(in) :: level(width, n_level)
     !> Rates. [-, -, -]
     real(wp), intent(out) :: rates(width, 3)
-    real(wp) :: angle(width), sine(width), p, q, crush, bound, sheared, share, on, alone
+    real(wp) :: angle(width), sine(width), p, q, crush, bound, sheared, share, on, alone, per_energy
     integer :: i
 
     angle(:n) = quarter_turn*(1.0_wp - max(0.0_wp, min(1.0_wp, level(:n, of_r))))
     call sines(n, angle, sine)
+    per_energy = 1.0_wp/self%energy
     do i = 1, n
       p = level(i, of_p)
       q = sqrt(level(i, of_square))
@@ -372,13 +377,13 @@ contains
       ! Shear alone tears the grains apart: it flows until they are pressed together.
       alone = (1.0_wp - on)*above_zero(level(i, of_y))
       p = on*p + (1.0_wp - on)
-      bound = on*level(i, of_bound) + (1.0_wp - on)
+      bound = 1.0_wp/(on*level(i, of_bound) + (1.0_wp - on))
       share = sine(i)**2
       crush = level(i, of_free)*share*p/(p*p + q*q)
-      sheared = q/bound*(p/bound)
+      sheared = (q*bound)*(p*bound)
       rates(i, of_volume) = on*(sheared*level(i, of_dilatancy) - crush*p) + alone
       rates(i, of_shear) = on*(crush*q + sheared) + alone
-      rates(i, of_broken) = on*level(i, of_left)**2*(1.0_wp - share)/self%energy*p
+      rates(i, of_broken) = on*level(i, of_left)**2*(1.0_wp - share)*per_energy*p
     end do
   end subroutine breakage_rates
 

@@ -92,7 +92,7 @@ contains
                + 2.0_wp*(d(4)*d(4) + d(5)*d(5) + d(6)*d(6))
         near = sqrt(near/max(j + third*ev*ev, least))
         near = max(near, trace/min(ev, -least), along/max(j, least))
-        near = max(near, abs(ray(i, of_dilation))/largest_change)
+        near = max(near, abs(ray(i, of_dilation))*(1.0_wp/largest_change))
         near = max(near, ray(i, of_crushing)/min(largest_change, level(i, of_left)))
         ray(i, of_far) = 1.0_wp/max(near, least)
       end associate
@@ -116,7 +116,7 @@ contains
     !> Derivatives of the yields.
     real(wp), intent(out) :: slope(width)
     real(wp), parameter :: least = tiny(1.0_wp)
-    real(wp) :: p1(width), square1(width), phi1(width), factor, share, on, above, p, left
+    real(wp) :: p1(width), square1(width), phi1(width), factor, share, on, above, p, left, f
     real(wp) :: free1, low1, high1, r1, strength, strength1
     integer :: i
 
@@ -127,8 +127,9 @@ contains
       associate (b_rate => ray(i, of_crushing), low => level(i, of_low), high => level(i, of_high))
         left = level(i, of_left)
         free1 = share*state(i, of_density)*left*(phi1(i)*left - 2.0_wp*level(i, of_phi)*b_rate)
-        low1 = -law%powers(1)*low*b_rate/left
-        high1 = -law%powers(2)*high*b_rate/left
+        f = b_rate/left
+        low1 = -law%powers(1)*low*f
+        high1 = -law%powers(2)*high*f
         r1 = high1 - (1.0_wp - state(i, of_porosity))*ray(i, of_dilation) &
              - level(i, of_r)*(high1 - low1)
         r1 = r1/max(high - low, least_gap)
@@ -139,9 +140,10 @@ contains
       strength1 = above*factor*(law%dilation*r1 - 0.5_wp*free1/sqrt(max(level(i, of_free), least)))
       strength = above*strength + (1.0_wp - above)*weakest*law%friction
       on = 0.5_wp + sign(0.5_wp, level(i, of_p) - least)
-      p = on*level(i, of_p) + (1.0_wp - on)
-      slope(i) = on*(free1 + (square1(i)/p/p - 2.0_wp*level(i, of_square)/p/p &
-                              *(p1(i)/p + strength1/strength))/strength**2)
+      p = 1.0_wp/(on*level(i, of_p) + (1.0_wp - on))
+      strength = 1.0_wp/strength
+      slope(i) = on*(free1 + p*strength*(p*strength*(square1(i) - 2.0_wp*level(i, of_square) &
+                                                     *(p1(i)*p + strength1*strength))))
     end do
   end subroutine slopes
 
@@ -166,18 +168,20 @@ contains
     !> That of Phi.
     real(wp), intent(out) :: phi1(width)
     real(wp), parameter :: least = tiny(1.0_wp)
-    real(wp) :: g, scale, a, b, j, x, h, w, u, f, es1, a1, h1, u1, s1, c1, b1
+    real(wp) :: g, g6, scale, a, b, j, x, h, w, u, f, es1, a1, h1, u1, s1, c1, b1
     integer :: i
 
     g = sqrt(3.0_wp*law%bulk*law%shear)
+    g6 = g/6.0_wp
     do i = 1, n
       associate (ev1 => path(i, 1), j1 => path(i, 2), d1 => path(i, 3), s => level(i, of_s), &
                  c => level(i, of_c), es => level(i, of_es))
         a = level(i, of_a)
         j = level(i, of_j)
         x = max(0.0_wp, -level(i, of_ev))
-        h = 0.5_wp*law%bulk*x/(smooth + x)
-        h1 = -0.5_wp*law%bulk*smooth/(smooth + x)**2*ev1
+        f = 1.0_wp/(smooth + x)
+        h = 0.5_wp*law%bulk*x*f
+        h1 = -0.5_wp*law%bulk*smooth*f*f*ev1
         a1 = -h*ev1
         es1 = j1/(3.0_wp*max(es, least))
         f = 1.0_wp - law%grading*state(i, of_breakage)
@@ -194,7 +198,7 @@ contains
         square1(i) = 3.0_wp*b*b1*j + 1.5_wp*b*b*j1 + 2.0_wp*c*j*(c1*j + c*j1) &
                      + 6.0_wp*((b1*c + b*c1)*level(i, of_d) + b*c*d1)
         phi1(i) = (2.0_wp/law%bulk)*a*a*a1 &
-                  + law%shear*(j1*(a + g/6.0_wp*es) + j*(a1 + g/6.0_wp*es1))
+                  + law%shear*(j1*(a + g6*es) + j*(a1 + g6*es1))
       end associate
     end do
   end subroutine stress_slopes
