@@ -100,8 +100,8 @@ contains
                               &buoyancy and drag of a fluid.')
     call description%add_note('A stress within the static cone stays at any packing, as in mpm_3d &
                               &and unlike SlurryGranularPhase.')
-    call description%add_note('The plastic step is one equation with one solution, found to &
-                              &round-off; mpm_3d takes Newton steps without a bound.')
+    call description%add_note('The plastic step is one equation, solved to round-off; mpm_3d takes &
+                              &Newton steps without a bound.')
   end subroutine cornstarch_describe
 
   !> Set the constants from the properties.

@@ -89,9 +89,10 @@ contains
                                 &reaches; without one, everywhere', default='')
     call description%add_note('The stress is that of the grains. The contact SlurryMixture adds &
                               &buoyancy and drag of a fluid.')
-    call description%add_note('The plastic step is one equation with one solution, found to &
-                              &round-off; a search that fails ends the run. mpm_3d goes through &
-                              &six stages and deletes the pressure where the shear stress is 0.')
+    call description%add_note('The plastic step is one equation, solved to round-off; it has one &
+                              &solution unless mu_1 < K_3 (phi_m - phi). A search that fails ends &
+                              &the run. mpm_3d goes through six stages and deletes the pressure &
+                              &where the shear stress is 0.')
     call description%add_note('The stress turns by exact rotations; mpm_3d takes forward Euler, by &
                               &which it grows.')
   end subroutine add_slurry_properties
