@@ -7,8 +7,8 @@
 module mpm_g2p
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
-  use mpm_stencil, only: axis_fraction, block_size, decode_keys, outside, stencil_t, &
-                         stencil_weights
+  use mpm_stencil, only: axis_fraction, block_size, decode_keys, hat_coordinates, outside, &
+                         stencil_t, stencil_weights
   use mpm_window, only: window_t
   implicit none
   private
@@ -46,7 +46,7 @@ contains
 
     select case (10*kin%sim_type + stencil%width)
     case (12)
-      call g2p_1d_2(stencil, window, n, key, x, extent, node_velocity, &
+      call g2p_1d_2(stencil, window, n, key, x, node_velocity, &
                    node_increment, velocity, increment, gradient)
     case (13)
       call g2p_1d_3(stencil, window, n, key, x, extent, node_velocity, &
@@ -58,7 +58,7 @@ contains
       call g2p_1d_5(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
     case (22)
-      call g2p_plane_2(stencil, window, n, key, x, extent, node_velocity, &
+      call g2p_plane_2(stencil, window, n, key, x, node_velocity, &
                    node_increment, velocity, increment, gradient)
     case (23)
       call g2p_plane_3(stencil, window, n, key, x, extent, node_velocity, &
@@ -70,7 +70,7 @@ contains
       call g2p_plane_5(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
     case (32)
-      call g2p_3d_2(stencil, window, n, key, x, extent, node_velocity, &
+      call g2p_3d_2(stencil, window, n, key, x, node_velocity, &
                    node_increment, velocity, increment, gradient)
     case (33)
       call g2p_3d_3(stencil, window, n, key, x, extent, node_velocity, &
@@ -82,7 +82,7 @@ contains
       call g2p_3d_5(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
     case (42)
-      call g2p_axisymmetric_2(stencil, window, n, key, x, extent, node_velocity, &
+      call g2p_axisymmetric_2(stencil, window, n, key, x, node_velocity, &
                    node_increment, velocity, increment, gradient)
     case (43)
       call g2p_axisymmetric_3(stencil, window, n, key, x, extent, node_velocity, &
@@ -94,7 +94,7 @@ contains
       call g2p_axisymmetric_5(stencil, window, n, key, x, extent, node_velocity, &
                    node_increment, velocity, increment, gradient)
     case (52)
-      call g2p_out_of_plane_2(stencil, window, n, key, x, extent, node_velocity, &
+      call g2p_out_of_plane_2(stencil, window, n, key, x, node_velocity, &
                    node_increment, velocity, increment, gradient)
     case (53)
       call g2p_out_of_plane_3(stencil, window, n, key, x, extent, node_velocity, &
@@ -112,10 +112,8 @@ contains
 #define NVEL 1
 #define NGRAD 1
 #define NAME g2p_1d_2
-#define WIDTH 2
-#include "g2p_template.inc"
+#include "g2p_hat_template.inc"
 #undef NAME
-#undef WIDTH
 #define NAME g2p_1d_3
 #define WIDTH 3
 #include "g2p_template.inc"
@@ -138,10 +136,8 @@ contains
 #define NVEL 2
 #define NGRAD 4
 #define NAME g2p_plane_2
-#define WIDTH 2
-#include "g2p_template.inc"
+#include "g2p_hat_template.inc"
 #undef NAME
-#undef WIDTH
 #define NAME g2p_plane_3
 #define WIDTH 3
 #include "g2p_template.inc"
@@ -164,10 +160,8 @@ contains
 #define NVEL 3
 #define NGRAD 9
 #define NAME g2p_3d_2
-#define WIDTH 2
-#include "g2p_template.inc"
+#include "g2p_hat_template.inc"
 #undef NAME
-#undef WIDTH
 #define NAME g2p_3d_3
 #define WIDTH 3
 #include "g2p_template.inc"
@@ -191,10 +185,8 @@ contains
 #define NGRAD 8
 #define HOOP
 #define NAME g2p_axisymmetric_2
-#define WIDTH 2
-#include "g2p_template.inc"
+#include "g2p_hat_template.inc"
 #undef NAME
-#undef WIDTH
 #define NAME g2p_axisymmetric_3
 #define WIDTH 3
 #include "g2p_template.inc"
@@ -218,10 +210,8 @@ contains
 #define NVEL 3
 #define NGRAD 6
 #define NAME g2p_out_of_plane_2
-#define WIDTH 2
-#include "g2p_template.inc"
+#include "g2p_hat_template.inc"
 #undef NAME
-#undef WIDTH
 #define NAME g2p_out_of_plane_3
 #define WIDTH 3
 #include "g2p_template.inc"

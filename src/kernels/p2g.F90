@@ -11,7 +11,8 @@
 module mpm_p2g
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
-  use mpm_stencil, only: axis_fraction, block_size, decode_keys, stencil_t, stencil_weights
+  use mpm_stencil, only: axis_fraction, block_size, decode_keys, hat_coordinates, stencil_t, &
+                         stencil_weights
   use mpm_window, only: window_t
   implicit none
   private
@@ -58,7 +59,7 @@ contains
 
     select case (10*kin%sim_type + stencil%width)
     case (12)
-      call p2g_1d_2(stencil, window, n, order, key, x, extent, mass, volume, &
+      call p2g_1d_2(stencil, window, n, order, key, x, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
     case (13)
       call p2g_1d_3(stencil, window, n, order, key, x, extent, mass, volume, &
@@ -70,7 +71,7 @@ contains
       call p2g_1d_5(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
     case (22)
-      call p2g_plane_2(stencil, window, n, order, key, x, extent, mass, volume, &
+      call p2g_plane_2(stencil, window, n, order, key, x, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
     case (23)
       call p2g_plane_3(stencil, window, n, order, key, x, extent, mass, volume, &
@@ -82,7 +83,7 @@ contains
       call p2g_plane_5(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
     case (32)
-      call p2g_3d_2(stencil, window, n, order, key, x, extent, mass, volume, &
+      call p2g_3d_2(stencil, window, n, order, key, x, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
     case (33)
       call p2g_3d_3(stencil, window, n, order, key, x, extent, mass, volume, &
@@ -94,7 +95,7 @@ contains
       call p2g_3d_5(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
     case (42)
-      call p2g_axisymmetric_2(stencil, window, n, order, key, x, extent, mass, volume, &
+      call p2g_axisymmetric_2(stencil, window, n, order, key, x, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
     case (43)
       call p2g_axisymmetric_3(stencil, window, n, order, key, x, extent, mass, volume, &
@@ -106,7 +107,7 @@ contains
       call p2g_axisymmetric_5(stencil, window, n, order, key, x, extent, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
     case (52)
-      call p2g_out_of_plane_2(stencil, window, n, order, key, x, extent, mass, volume, &
+      call p2g_out_of_plane_2(stencil, window, n, order, key, x, mass, volume, &
                    velocity, stress, node_mass, node_momentum, node_force)
     case (53)
       call p2g_out_of_plane_3(stencil, window, n, order, key, x, extent, mass, volume, &
@@ -124,10 +125,8 @@ contains
 #define NVEL 1
 #define NSTRESS 3
 #define NAME p2g_1d_2
-#define WIDTH 2
-#include "p2g_template.inc"
+#include "p2g_hat_template.inc"
 #undef NAME
-#undef WIDTH
 #define NAME p2g_1d_3
 #define WIDTH 3
 #include "p2g_three_template.inc"
@@ -150,10 +149,8 @@ contains
 #define NVEL 2
 #define NSTRESS 4
 #define NAME p2g_plane_2
-#define WIDTH 2
-#include "p2g_template.inc"
+#include "p2g_hat_template.inc"
 #undef NAME
-#undef WIDTH
 #define NAME p2g_plane_3
 #define WIDTH 3
 #include "p2g_three_template.inc"
@@ -176,10 +173,8 @@ contains
 #define NVEL 3
 #define NSTRESS 6
 #define NAME p2g_3d_2
-#define WIDTH 2
-#include "p2g_template.inc"
+#include "p2g_hat_template.inc"
 #undef NAME
-#undef WIDTH
 #define NAME p2g_3d_3
 #define WIDTH 3
 #include "p2g_three_template.inc"
@@ -203,10 +198,8 @@ contains
 #define NSTRESS 6
 #define HOOP
 #define NAME p2g_axisymmetric_2
-#define WIDTH 2
-#include "p2g_template.inc"
+#include "p2g_hat_template.inc"
 #undef NAME
-#undef WIDTH
 #define NAME p2g_axisymmetric_3
 #define WIDTH 3
 #include "p2g_three_template.inc"
@@ -230,10 +223,8 @@ contains
 #define NVEL 3
 #define NSTRESS 6
 #define NAME p2g_out_of_plane_2
-#define WIDTH 2
-#include "p2g_template.inc"
+#include "p2g_hat_template.inc"
 #undef NAME
-#undef WIDTH
 #define NAME p2g_out_of_plane_3
 #define WIDTH 3
 #include "p2g_three_template.inc"

@@ -31,7 +31,8 @@ module mpm_stencil
   implicit none
   private
   public :: stencil_t
-  public :: axis_fraction, block_size, decode_keys, outside, stencil_keys, stencil_weights
+  public :: axis_fraction, block_size, decode_keys, hat_coordinates, outside, stencil_keys
+  public :: stencil_weights
   public :: basis_box, basis_cubic, basis_hat, natural_width, period_shift
 
   !> Points treated together by the kernels; their scratch fits the first-level cache.
@@ -117,11 +118,23 @@ contains
     end if
     select case (stencil%dim)
     case (1)
-      call keys_1d(stencil, n, x, extent, key)
+      if (stencil%averaged) then
+        call averaged_keys_1d(stencil, n, x, extent, key)
+      else
+        call keys_1d(stencil, n, x, key)
+      end if
     case (2)
-      call keys_2d(stencil, n, x, extent, key)
+      if (stencil%averaged) then
+        call averaged_keys_2d(stencil, n, x, extent, key)
+      else
+        call keys_2d(stencil, n, x, key)
+      end if
     case default
-      call keys_3d(stencil, n, x, extent, key)
+      if (stencil%averaged) then
+        call averaged_keys_3d(stencil, n, x, extent, key)
+      else
+        call keys_3d(stencil, n, x, key)
+      end if
     end select
   end subroutine stencil_keys
 
@@ -249,6 +262,37 @@ contains
       base(:, p) = b
     end do
   end subroutine decode_keys
+
+  !> Coordinates of points in their cells: all that hat functions need.
+  !!
+  !! The lower node of a direction has the value 1 - xi, the upper one xi.
+  pure subroutine hat_coordinates(stencil, dim, n, x, n_max, xi)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Dimensions of the grid.
+    integer, intent(in) :: dim
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Positions, inside the grid. [m] (dim, n)
+    real(wp), intent(in) :: x(dim, n)
+    !> Rows of `xi`.
+    integer, intent(in) :: n_max
+    !> Coordinates in the cell, neither 0 nor 1. (n_max, dim)
+    real(wp), intent(inout) :: xi(n_max, dim)
+    real(wp) :: inverse_h, lower, s, last
+    integer :: p, d
+
+    do d = 1, dim
+      inverse_h = 1.0_wp/stencil%h(d)
+      lower = stencil%lower(d)
+      ! A point on the upper face belongs to the last cell, in periodic directions to the first one.
+      last = merge(huge(1.0_wp), real(stencil%n_cells(d) - 1, wp), stencil%periodic(d))
+      do p = 1, n
+        s = (x(d, p) - lower)*inverse_h
+        xi(p, d) = off_node(s - min(real(int(s), wp), last))
+      end do
+    end do
+  end subroutine hat_coordinates
 
   !> Values and derivatives of the 1D functions at points.
   pure subroutine stencil_weights(stencil, n, x, extent, base, w, dw)
@@ -579,16 +623,31 @@ contains
 #define NAME keys_1d
 #include "keys_template.inc"
 #undef NAME
+#define NAME averaged_keys_1d
+#define AVERAGED
+#include "keys_template.inc"
+#undef NAME
+#undef AVERAGED
 #undef DIM
 #define DIM 2
 #define NAME keys_2d
 #include "keys_template.inc"
 #undef NAME
+#define NAME averaged_keys_2d
+#define AVERAGED
+#include "keys_template.inc"
+#undef NAME
+#undef AVERAGED
 #undef DIM
 #define DIM 3
 #define NAME keys_3d
 #include "keys_template.inc"
 #undef NAME
+#define NAME averaged_keys_3d
+#define AVERAGED
+#include "keys_template.inc"
+#undef NAME
+#undef AVERAGED
 #undef DIM
 #define DIM 1
 #define NAME weights_1d_2
