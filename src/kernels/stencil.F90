@@ -32,7 +32,7 @@ module mpm_stencil
   private
   public :: stencil_t
   public :: axis_fraction, block_size, decode_keys, hat_coordinates, outside, stencil_keys
-  public :: stencil_weights
+  public :: stencil_weights, weights_of_points
   public :: basis_box, basis_cubic, basis_hat, natural_width, period_shift
 
   !> Points treated together by the kernels; their scratch fits the first-level cache.
@@ -338,27 +338,105 @@ contains
     !> Derivatives. [1/m] (width, dim, n)
     real(wp), intent(inout) :: dw(*)
 
+    real(wp) :: value(block_size*stencil%width*stencil%dim), slope(block_size*stencil%width*stencil%dim)
+
+    if (stencil%width == 2) then
+      select case (stencil%dim)
+      case (1)
+        call weights_1d_2(stencil, n, x, base, w, dw)
+      case (2)
+        call weights_2d_2(stencil, n, x, base, w, dw)
+      case (3)
+        call weights_3d_2(stencil, n, x, base, w, dw)
+      end select
+    else
+      call many_weights(stencil, n, x, extent, base, value, slope)
+      call turn(stencil%width*stencil%dim, n, value, w)
+      call turn(stencil%width*stencil%dim, n, slope, dw)
+    end if
+  end subroutine plain_weights
+
+  !> Make the first dimension the last one.
+  pure subroutine turn(n_values, n, values, turned)
+    !> Values of a point.
+    integer, intent(in) :: n_values
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Values. (block_size, n_values)
+    real(wp), intent(in) :: values(block_size, n_values)
+    !> The same. (n_values, n)
+    real(wp), intent(out) :: turned(n_values, n)
+    integer :: p
+
+    ! Gather instructions are slower than loads.
+    !GCC$ novector
+    do p = 1, n
+      turned(:, p) = values(p, :)
+    end do
+  end subroutine turn
+
+  !> Values and derivatives of more than two functions, the points first.
+  pure subroutine many_weights(stencil, n, x, extent, base, w, dw)
+    !> Basis, neither averages of smooth or periodic functions nor fitted.
+    type(stencil_t), intent(in) :: stencil
+    !> Number of points, at most `block_size`.
+    integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(*)
+    !> Half sides of the points' boxes. [m] (n)
+    real(wp), intent(in) :: extent(n)
+    !> First nodes. (3, n)
+    integer, intent(in) :: base(3, n)
+    !> Values. (block_size, width, dim)
+    real(wp), intent(inout) :: w(*)
+    !> Derivatives. [1/m] (block_size, width, dim)
+    real(wp), intent(inout) :: dw(*)
+
     select case (10*stencil%dim + stencil%width)
-    case (12)
-      call weights_1d_2(stencil, n, x, base, w, dw)
     case (13)
       call weights_1d_3(stencil, n, x, extent, base, w, dw)
     case (14)
       call weights_1d_4(stencil, n, x, extent, base, w, dw)
-    case (22)
-      call weights_2d_2(stencil, n, x, base, w, dw)
     case (23)
       call weights_2d_3(stencil, n, x, extent, base, w, dw)
     case (24)
       call weights_2d_4(stencil, n, x, extent, base, w, dw)
-    case (32)
-      call weights_3d_2(stencil, n, x, base, w, dw)
     case (33)
       call weights_3d_3(stencil, n, x, extent, base, w, dw)
     case (34)
       call weights_3d_4(stencil, n, x, extent, base, w, dw)
     end select
-  end subroutine plain_weights
+  end subroutine many_weights
+
+  !> Values and derivatives of the functions of three nodes and more, the points first.
+  pure subroutine weights_of_points(stencil, n, x, extent, base, w, dw)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Number of points, at most `block_size`.
+    integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(*)
+    !> Half sides of the points' boxes. [m] (n)
+    real(wp), intent(in) :: extent(n)
+    !> First nodes, as of `decode_keys`. (3, n)
+    integer, intent(in) :: base(3, n)
+    !> Values. (block_size, width, dim)
+    real(wp), intent(inout) :: w(block_size, stencil%width*stencil%dim)
+    !> Derivatives. [1/m] (block_size, width, dim)
+    real(wp), intent(inout) :: dw(block_size, stencil%width*stencil%dim)
+    real(wp) :: value(stencil%width*stencil%dim, n), slope(stencil%width*stencil%dim, n)
+    integer :: p
+
+    if (stencil%fitted .or. (stencil%averaged .and. stencil%general())) then
+      call stencil_weights(stencil, n, x, extent, base, value, slope)
+      do p = 1, n
+        w(p, :) = value(:, p)
+        dw(p, :) = slope(:, p)
+      end do
+    else
+      call many_weights(stencil, n, x, extent, base, w, dw)
+    end if
+  end subroutine weights_of_points
 
   !> The period that lies between the stored position of a point and the nodes of its stencil.
   !!
