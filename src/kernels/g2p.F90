@@ -1,7 +1,8 @@
 !> Grid-to-particle interpolation of velocity, velocity increment and velocity gradient.
 !!
-!! One template (`g2p_template.inc`) compiled for each simulation TYPE and stencil width. The nodal
-!! values are gathered once per run of points that share a stencil.
+!! Templates, compiled for each simulation TYPE and stencil width: `g2p_hat_template.inc` for hats,
+!! `g2p_template.inc` for three nodes in each direction and more. The nodal values are gathered once
+!! per run of points that share a stencil.
 !!
 !! In TYPE 4 with the radius r before the move: L_tt = v_r/r, L_rt = -v_t/r.
 module mpm_g2p
