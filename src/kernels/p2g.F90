@@ -1,9 +1,10 @@
 !> Particle-to-grid scatter of mass, momentum and internal force.
 !!
 !! Templates, compiled for each simulation TYPE and stencil width, with both known to the compiler:
-!! `p2g_hat_template.inc` for hats, `p2g_three_template.inc` for three nodes in each direction, which
-!! fill registers of four lanes badly, and `p2g_template.inc` for more. Points that share a stencil (the points of a cell) are summed into
-!! local accumulators, which are added to the grid once per cell.
+!! `p2g_hat_template.inc` for hats, `p2g_three_template.inc` for three nodes in each direction,
+!! which fill registers of four lanes badly, and `p2g_template.inc` for more. Points that share a
+!! stencil (the points of a cell) are summed into local accumulators, which are added to the grid
+!! once per cell.
 !!
 !! f_i = -sum_p V_p T_p . grad N_i(x_p); in TYPE 4 also f_r -= sum_p S_ip A_p T_tt and
 !! f_t += sum_p S_ip A_p T_rt with the meridian area A_p = V_p/r_p (Sulsky, Chen and Schreyer,

@@ -338,7 +338,8 @@ contains
     !> Derivatives. [1/m] (width, dim, n)
     real(wp), intent(inout) :: dw(*)
 
-    real(wp) :: value(block_size*stencil%width*stencil%dim), slope(block_size*stencil%width*stencil%dim)
+    real(wp) :: value(block_size*stencil%width*stencil%dim)
+    real(wp) :: slope(block_size*stencil%width*stencil%dim)
 
     if (stencil%width == 2) then
       select case (stencil%dim)
