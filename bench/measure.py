@@ -117,15 +117,10 @@ def measure(
         samples.append(1e9 * spent / ((steps - SHORT) * case.points))
         set_up.append(check.wall)
         memory = max(memory, high.memory)
-    wanted = min(FRAMES, max(1, FRAME_POINTS // case.points))
-    rate = f"serializer.properties={{{wanted / (steps * case.dt)!r}}}"
-    told = run(command_of(program, case, steps, threads, "-v", "--set", rate), case.folder).text
-    table = phases(told)
-    loop = {name: s for name, s in table.items() if name not in ("set-up", "output")}
+    told = timed_frames(program, case, threads, steps, binary=False)
+    binary = timed_frames(program, case, threads, steps, binary=True)
+    loop = {name: s for name, s in phases(told).items() if name not in ("set-up", "output")}
     total = sum(loop.values())
-    # One frame against the steps until the next one.
-    between = total / steps / (FRAME_RATE * case.dt)
-    frame = table.get("output", 0.0) / frames_of(told)
     return {
         "scene": case.scene.name,
         "points": case.points,
@@ -137,9 +132,30 @@ def measure(
         "bytes_per_point": memory / case.points,
         "stated_bytes_per_point": stated_memory(told) / case.points,
         "phases": {name: s / total for name, s in loop.items()} if total > 0.0 else {},
-        "frame_s": frame,
-        "frames_share": frame / (frame + between) if frame > 0.0 else 0.0,
+        "frames_share": frames_share(told, case, steps),
+        "binary_share": frames_share(binary, case, steps),
     }
+
+
+def timed_frames(program: str, case: Case, threads: int, steps: int, *, binary: bool) -> str:
+    """Run with some frames, of text or binary; return what the program tells."""
+    wanted = min(FRAMES, max(1, FRAME_POINTS // case.points))
+    nodes = 0 if case.scene.cells else 1
+    settings = (
+        f"serializer.properties={{{wanted / (steps * case.dt)!r}}}",
+        f"serializer.int-properties={{binary = {int(binary)}, nodes = {nodes}}}",
+    )
+    options = [word for setting in settings for word in ("--set", setting)]
+    return run(command_of(program, case, steps, threads, "-v", *options), case.folder).text
+
+
+def frames_share(told: str, case: Case, steps: int) -> float:
+    """Return the time of a frame over that of it and the steps until the next one."""
+    table = phases(told)
+    frame = table.get("output", 0.0) / frames_of(told)
+    spent = sum(s for name, s in table.items() if name not in ("set-up", "output"))
+    between = spent / steps / (FRAME_RATE * case.dt)
+    return frame / (frame + between) if frame > 0.0 else 0.0
 
 
 def reference(kernel: str) -> dict[str, float]:

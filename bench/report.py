@@ -27,6 +27,7 @@ TARGET_POINTS = range(200_000, 300_000)
 HEADER = (
     f"{'scene':20}{'points':>9}{'thr':>4}{'ns/point/step':>14}  {'(min .. max)':17}"
     f"{'set-up s':>9}{'B/point':>8}{'stated':>7}{'frames':>8}"
+    f"{'binary':>8}"
 )
 
 
@@ -38,6 +39,7 @@ def line(row: Row) -> str:
         f"{row['scene']:20}{row['points']:>9}{row['threads']:>4}{cost['median']:>14.1f}  "
         f"{scatter:17}{row['set_up_s']:>9.2f}{row['bytes_per_point']:>8.0f}"
         f"{row['stated_bytes_per_point']:>7.0f}{100 * row['frames_share']:>7.1f}%"
+        f"{100 * row['binary_share']:>7.1f}%"
     )
 
 

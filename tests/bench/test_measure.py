@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from bench.measure import BenchError, phases, run, spread, stated_memory
+from bench.measure import BenchError, frames_share, phases, run, spread, stated_memory
+from bench.scenes import SCENE, Case
 
 TEXT = """memory:  44.4 MB for points and nodes
 running 30 steps on 1 thread
@@ -40,6 +41,14 @@ def test_a_run_that_fails_is_told(tmp_path: Path) -> None:
 def test_phases_are_read() -> None:
     """Set-up has no share, and no other line is taken for a phase."""
     assert phases(TEXT) == {"set-up": 0.243, "sort": 0.025, "P2G": 0.191, "output": 10.141}
+
+
+def test_share_of_frames(tmp_path: Path) -> None:
+    """Between two frames, 1/60 s apart, are 1/60 s/dt steps of 0.216 s/30 each."""
+    case = Case(SCENE["3d-linear"], tmp_path, 1000, 1e-4)
+    between = 0.216 / 30 / (60.0 * 1e-4)
+    assert frames_share(TEXT, case, 30) == pytest.approx(10.141 / (10.141 + between))
+    assert frames_share(TEXT.replace("10.141", "0.000"), case, 30) == 0.0
 
 
 def test_stated_memory_is_read() -> None:

@@ -19,6 +19,7 @@ def row(scene: str, threads: int, median: float, points: int = 250_000) -> dict:
         "bytes_per_point": 300.0,
         "stated_bytes_per_point": 172.0,
         "frames_share": 0.05,
+        "binary_share": 0.01,
         "phases": {},
     }
 
