@@ -108,31 +108,32 @@ contains
     real(wp), intent(inout) :: f2(nvel)
     !> Contact force on body 1. [N]
     real(wp), intent(out) :: force(nvel)
-    real(wp) :: trial1(nvel), trial2(nvel), stick(nvel), share, pull
+    ! Of a fixed size: arrays of a size known at run time alone may be allocated.
+    real(wp) :: trial1(3), trial2(3), stick(3), share, pull
 
     force = 0.0_wp
     if (.not. (m1 > 0.0_wp .and. m2 > 0.0_wp)) return
-    trial1 = p1
-    trial2 = p2
+    trial1(:nvel) = p1
+    trial2(:nvel) = p2
     share = m1 + m2
-    if (implicit) trial2 = trial2 + dt*f2
+    if (implicit) trial2(:nvel) = trial2(:nvel) + dt*f2
     if (kind == law_rigid) then
       ! Body 1 takes all momentum and stays as fast as it is.
       share = m1
     else if (implicit) then
-      trial1 = trial1 + dt*f1
+      trial1(:nvel) = trial1(:nvel) + dt*f1
     end if
     ! The force on body 1 by which both get one velocity: m1 (w_c - w_1)/dt.
-    stick = (m1*trial2 - m2*trial1)/(share*dt)
-    pull = dot_product(stick, normal)
+    stick(:nvel) = (m1*trial2(:nvel) - m2*trial1(:nvel))/(share*dt)
+    pull = dot_product(stick(:nvel), normal)
     select case (kind)
     case (law_joint)
-      force = stick
+      force = stick(:nvel)
     case (law_slip_joint)
       force = pull*normal
     case default
       if (.not. pull < 0.0_wp) return
-      force = pull*normal + rub(nvel, friction*abs(pull), stick - pull*normal)
+      force = pull*normal + rub(nvel, friction*abs(pull), stick(:nvel) - pull*normal)
     end select
     f1 = f1 + force
     f2 = f2 - force

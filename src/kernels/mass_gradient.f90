@@ -9,6 +9,9 @@ module mpm_mass_gradient
   private
   public :: mass_gradient
 
+  !> Most nodes of a stencil in one direction.
+  integer, parameter :: most_nodes = 5
+
 contains
 
   !> N_i = sum_p m_p grad N_i(x_p) at the nodes of a window; in TYPE 4 with m_p/r_p.
@@ -100,7 +103,7 @@ contains
     !> Gradients, components beyond dim 0. [kg/m] (nvel, nn)
     real(wp), intent(out) :: gradient(:, :)
     real(wp) :: xb(kin%dim, block_size), eb(block_size), m(block_size), r_floor
-    real(wp) :: w(5*kin%dim*block_size), dw(5*kin%dim*block_size)
+    real(wp) :: w(most_nodes*kin%dim*block_size), dw(most_nodes*kin%dim*block_size)
     integer :: base(3, block_size), here(3, 1), rows, low, high, k, p, previous, nb, j, values
     logical :: near
 
@@ -177,21 +180,22 @@ contains
     type(window_t), intent(in) :: window
     !> Gradients, added to. [kg/m]
     real(wp), intent(inout) :: gradient(:, :)
-    real(wp) :: value(width, 3), slope(width, 3)
-    integer :: first(3), last(3), i, j, k, position
+    ! Of a fixed size: arrays of a size known at run time alone may be allocated.
+    real(wp) :: value(most_nodes, 3), slope(most_nodes, 3)
+    integer :: first(3), last(3), i, j, k, start, position
 
     ! Unused directions have one function, 1.
-    value = 1.0_wp
-    slope = 0.0_wp
-    value(:, :dim) = w
-    slope(:, :dim) = dw
+    value(1, :) = 1.0_wp
+    value(:width, :dim) = w
+    slope(:width, :dim) = dw
     first = max(1, window%lo - base + 1)
     last = min(width, window%lo + window%n - base)
     last(dim + 1:) = 1
+    start = window%start(base)
     do k = first(3), last(3)
       do j = first(2), last(2)
         do i = first(1), last(1)
-          position = window%index(base + [i, j, k] - 1)
+          position = start + i + window%n(1)*(j - 1 + window%n(2)*(k - 1))
           gradient(1, position) = gradient(1, position) &
                                   + mass*slope(i, 1)*value(j, 2)*value(k, 3)
           if (dim < 2) cycle

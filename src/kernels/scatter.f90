@@ -18,6 +18,8 @@ module mpm_scatter
 
   !> Points in a slab, about; fewer would cost more in scheduling than they give.
   integer, parameter :: slab_points = 512
+  !> Nodes that are set to 0 at once.
+  integer, parameter :: clear_nodes = 64
 
 contains
 
@@ -58,7 +60,7 @@ contains
     real(wp), contiguous, intent(inout) :: node_momentum(:, :)
     !> Nodal forces. [N] (nvel, nn)
     real(wp), contiguous, intent(inout) :: node_force(:, :)
-    integer :: rows, thickness, slabs, slab, colour, first, last, i, nodes
+    integer :: rows, thickness, slabs, slab, colour, first, last, nodes
 
     rows = ubound(row_offset, 1)
     nodes = window%size()
@@ -67,12 +69,13 @@ contains
     !$omp parallel default(none) num_threads(threads) &
     !$omp shared(kin, stencil, window, order, row_offset, key, x, extent, mass, volume, velocity) &
     !$omp shared(stress, node_mass, node_momentum, node_force, rows, thickness, slabs, nodes) &
-    !$omp private(slab, colour, first, last, i)
+    !$omp private(slab, colour, first, last)
     !$omp do schedule(static)
-    do i = 1, nodes
-      node_mass(i) = 0.0_wp
-      node_momentum(:, i) = 0.0_wp
-      node_force(:, i) = 0.0_wp
+    do first = 1, nodes, clear_nodes
+      last = min(nodes, first + clear_nodes - 1)
+      call clear(last - first + 1, node_mass(first:last))
+      call clear(kin%nvel*(last - first + 1), node_momentum(:, first:last))
+      call clear(kin%nvel*(last - first + 1), node_force(:, first:last))
     end do
     !$omp end do
     do colour = 0, 1
@@ -91,5 +94,15 @@ contains
     call fold_ghosts(stencil, window, kin%nvel, node_momentum)
     call fold_ghosts(stencil, window, kin%nvel, node_force)
   end subroutine scatter
+
+  !> Set numbers that follow each other to 0.
+  pure subroutine clear(n, values)
+    !> How many.
+    integer, intent(in) :: n
+    !> The numbers.
+    real(wp), intent(out) :: values(n)
+
+    values = 0.0_wp
+  end subroutine clear
 
 end module mpm_scatter

@@ -6,6 +6,9 @@ module mpm_sort
   private
   public :: base_bounds, sort_by_cell
 
+  !> Rows of cells in which points are looked for one row at a time.
+  integer, parameter :: few_rows = 4
+
 contains
 
   !> Smallest and largest first node of the stencils of points inside the grid; on a mesh the lowest
@@ -21,7 +24,7 @@ contains
     integer, intent(out) :: lo(3)
     !> Largest first node per direction; -1 when all points are outside.
     integer, intent(out) :: hi(3)
-    integer :: p, previous, low, high, base(3, 1)
+    integer :: p, previous, low, high, next, row, base(3, 1)
 
     lo = huge(1)
     hi = -1
@@ -35,28 +38,56 @@ contains
       end do
       return
     end if
+    call split_keys(n, key, 0, high, low)
+    if (low == huge(1)) return
     if (stencil%dim == 1) then
-      low = huge(1)
-      high = -1
-      do p = 1, n
-        low = min(low, merge(huge(1), key(p), key(p) == outside))
-        high = max(high, key(p))
-      end do
-      if (high < 0) return
+      call split_keys(n, key, huge(1), high, next)
       lo = [low, 0, 0]
       hi = [high, 0, 0]
       return
     end if
-    ! The points of a cell follow each other.
+    ! Keys are in the order of rows along x, and most blocks have points in few of them.
+    do row = 1, few_rows
+      call decode_keys(stencil, 1, [low], base)
+      call split_keys(n, key, low - base(1, 1) + stencil%n_cells(1) + 1, high, next)
+      lo = min(lo, base(:, 1))
+      base(1, 1) = base(1, 1) + high - low
+      hi = max(hi, base(:, 1))
+      if (next == huge(1)) return
+      low = next
+    end do
     previous = outside
     do p = 1, n
-      if (key(p) == previous .or. key(p) == outside) cycle
+      if (key(p) == previous .or. key(p) < low) cycle
       previous = key(p)
       call decode_keys(stencil, 1, key(p:p), base)
       lo = min(lo, base(:, 1))
       hi = max(hi, base(:, 1))
     end do
   end subroutine base_bounds
+
+  !> Largest key below a limit and smallest key from there on.
+  pure subroutine split_keys(n, key, limit, below, above)
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Keys. (n)
+    integer, intent(in) :: key(n)
+    !> The limit, 0 or more: what is outside the grid is below it.
+    integer, intent(in) :: limit
+    !> Largest key below the limit; `outside` when there is none.
+    integer, intent(out) :: below
+    !> Smallest other key; huge when there is none.
+    integer, intent(out) :: above
+    integer :: p
+
+    below = outside
+    above = huge(1)
+    !$omp simd reduction(max:below) reduction(min:above)
+    do p = 1, n
+      below = max(below, merge(key(p), outside, key(p) < limit))
+      above = min(above, merge(huge(1), key(p), key(p) < limit))
+    end do
+  end subroutine split_keys
 
   !> Order points by cell, x fastest, and find where each row of cells begins.
   !!

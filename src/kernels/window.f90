@@ -45,10 +45,9 @@ contains
     integer, intent(in) :: node(3)
     !> Position, from 1.
     integer :: position
-    integer :: d(3)
 
-    d = node - self%lo
-    position = 1 + d(1) + self%n(1)*(d(2) + self%n(2)*d(3))
+    position = 1 + node(1) - self%lo(1) &
+               + self%n(1)*(node(2) - self%lo(2) + self%n(2)*(node(3) - self%lo(3)))
   end function window_index
 
   !> Node at a position in the window's arrays.
@@ -77,7 +76,7 @@ contains
     !> Position, from 0.
     integer :: position
 
-    position = self%index(node) - 1
+    position = window_index(self, node) - 1
   end function window_start
 
   !> Highest node index in each direction.

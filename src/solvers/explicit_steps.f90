@@ -9,6 +9,7 @@ module mpm_explicit_steps
   use mpm_material, only: material_t
   use mpm_memory, only: memory_left, size_text, way_to_more
   use mpm_model, only: model_t
+  use mpm_node_update, only: advance_nodes, finish_mapping
   use mpm_nodes, only: nodes_t
   use mpm_phase_clock, only: phase_clock_t, phase_g2p, phase_material, phase_nodes, phase_p2g, &
                              phase_sort
@@ -178,54 +179,6 @@ contains
     end do
   end subroutine add_loads
 
-  !> Add the body force and form the nodal velocities.
-  !!
-  !! At nodes of negligible mass the acceleration by internal forces waits in `increment`: it takes
-  !! part in the velocities of the points, where the small weight of the node makes up for it and
-  !! momentum is conserved, but not in the velocity of the node, from which L is formed.
-  subroutine finish_mapping(nvel, n, threads, cutoff, body_force, mass, momentum, force, &
-                            velocity, increment)
-    !> Components of a vector.
-    integer, intent(in) :: nvel
-    !> Number of nodes.
-    integer, intent(in) :: n
-    !> Number of threads.
-    integer, intent(in) :: threads
-    !> Mass at or below which a node is negligible. [kg]
-    real(wp), intent(in) :: cutoff
-    !> Acceleration by the body force. [m/s2]
-    real(wp), intent(in) :: body_force(3)
-    !> Nodal masses. [kg]
-    real(wp), intent(in) :: mass(n)
-    !> Nodal momenta. [kg m/s]
-    real(wp), intent(in) :: momentum(nvel, n)
-    !> Nodal forces. [N]
-    real(wp), intent(inout) :: force(nvel, n)
-    !> Nodal velocities. [m/s]
-    real(wp), intent(out) :: velocity(nvel, n)
-    !> Accelerations by the internal forces of negligible nodes, 0 elsewhere. [m/s2]
-    real(wp), intent(out) :: increment(nvel, n)
-    integer :: i
-
-    !$omp parallel do default(none) num_threads(useful_threads(threads, n)) schedule(static) &
-    !$omp shared(nvel, n, cutoff, body_force, mass, momentum, force, velocity, increment) &
-    !$omp private(i)
-    do i = 1, n
-      increment(:, i) = 0.0_wp
-      if (mass(i) > 0.0_wp) then
-        if (mass(i) <= cutoff) then
-          increment(:, i) = force(:, i)/mass(i)
-          force(:, i) = 0.0_wp
-        end if
-        force(:, i) = force(:, i) + mass(i)*body_force(:nvel)
-        velocity(:, i) = momentum(:, i)/mass(i)
-      else
-        velocity(:, i) = 0.0_wp
-      end if
-    end do
-    !$omp end parallel do
-  end subroutine finish_mapping
-
   !> Advance the nodal momenta: P += dt f, v = P/m, dv = dt f/m.
   subroutine update_nodes(nodes, dt, threads)
     !> The nodes.
@@ -238,43 +191,6 @@ contains
     call advance_nodes(nodes%kin%nvel, nodes%window%size(), threads, dt, nodes%mass, nodes%force, &
                        nodes%momentum, nodes%velocity, nodes%increment)
   end subroutine update_nodes
-
-  !> Advance nodal momenta.
-  subroutine advance_nodes(nvel, n, threads, dt, mass, force, momentum, velocity, increment)
-    !> Components of a vector.
-    integer, intent(in) :: nvel
-    !> Number of nodes.
-    integer, intent(in) :: n
-    !> Number of threads.
-    integer, intent(in) :: threads
-    !> Time step. [s]
-    real(wp), intent(in) :: dt
-    !> Nodal masses. [kg]
-    real(wp), intent(in) :: mass(n)
-    !> Nodal forces. [N]
-    real(wp), intent(in) :: force(nvel, n)
-    !> Nodal momenta. [kg m/s]
-    real(wp), intent(inout) :: momentum(nvel, n)
-    !> Nodal velocities. [m/s]
-    real(wp), intent(out) :: velocity(nvel, n)
-    !> On entry accelerations that `force` leaves out, on exit velocity increments. [m/s]
-    real(wp), intent(inout) :: increment(nvel, n)
-    integer :: i
-
-    !$omp parallel do default(none) num_threads(useful_threads(threads, n)) schedule(static) &
-    !$omp shared(nvel, n, dt, mass, force, momentum, velocity, increment) private(i)
-    do i = 1, n
-      if (mass(i) > 0.0_wp) then
-        momentum(:, i) = momentum(:, i) + dt*force(:, i)
-        velocity(:, i) = momentum(:, i)/mass(i)
-        increment(:, i) = dt*(force(:, i)/mass(i) + increment(:, i))
-      else
-        velocity(:, i) = 0.0_wp
-        increment(:, i) = 0.0_wp
-      end if
-    end do
-    !$omp end parallel do
-  end subroutine advance_nodes
 
   !> Advance the points of a body with the grid, then their stress.
   subroutine update_points(model, body, dt, keep_gradient, error, keep_stress, sweep)
