@@ -231,6 +231,17 @@ contains
         rate(4, p) = 0.5_wp*factor*(gradient(2, p) + gradient(3, p))
         trace(p) = gradient(1, p) + gradient(4, p)
       end do
+    case (type_3d)
+      ! As in `stretching`, whose choice of the TYPE and copies would cost more than the sums.
+      do p = 1, n
+        rate(1, p) = factor*gradient(1, p)
+        rate(2, p) = factor*gradient(5, p)
+        rate(3, p) = factor*gradient(9, p)
+        rate(4, p) = 0.5_wp*factor*(gradient(2, p) + gradient(4, p))
+        rate(5, p) = 0.5_wp*factor*(gradient(6, p) + gradient(8, p))
+        rate(6, p) = 0.5_wp*factor*(gradient(3, p) + gradient(7, p))
+        trace(p) = gradient(1, p) + gradient(5, p) + gradient(9, p)
+      end do
     case default
       do p = 1, n
         call stretching(kin%sim_type, gradient(:, p), d)
