@@ -4,6 +4,7 @@ module mpm_compressible_neohookean_elasticity
                              expand_deformation, identity, root, store_deformation, &
                              turn_deformation
   use mpm_description, only: description_t
+  use mpm_elementary, only: logarithms
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
   use mpm_kinds, only: wp
@@ -129,7 +130,9 @@ contains
     call advance_deformations(self%kin, n, dt, gradient, history, f, j, first_bad)
     if (first_bad > 0) return
     scale = self%shear/j
-    pressure = scale - self%lambda*log(j)/j
+    ! Of a loop with `log` the compiler makes vectors that round otherwise than what is left of it.
+    call logarithms(n, j, pressure)
+    pressure = scale - self%lambda*pressure/j
     do c = 1, self%kin%nstress
       associate (a => first(c), b => second(c))
         stress(c, :) = scale*(f(:, a, 1)*f(:, b, 1) + f(:, a, 2)*f(:, b, 2) + f(:, a, 3)*f(:, b, 3))

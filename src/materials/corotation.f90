@@ -13,8 +13,8 @@ module mpm_corotation
                             type_plane_strain
   implicit none
   private
-  public :: add_strain, elastic_energy, first_not_finite, invariants, rebuild, shear_rates
-  public :: spin_stress, strain_rates, trial_stress
+  public :: add_strain, elastic_energy, first_not_finite, invariants, rates_by_component, rebuild
+  public :: shear_rates, spin_stress, strain_rates, trial_stress, width
 
   !> Points that lie component by component at a time.
   integer, parameter :: width = 128
@@ -231,6 +231,17 @@ contains
         rate(4, p) = 0.5_wp*factor*(gradient(2, p) + gradient(3, p))
         trace(p) = gradient(1, p) + gradient(4, p)
       end do
+    case (type_3d)
+      ! As in `stretching`, whose choice of the TYPE and copies would cost more than the sums.
+      do p = 1, n
+        rate(1, p) = factor*gradient(1, p)
+        rate(2, p) = factor*gradient(5, p)
+        rate(3, p) = factor*gradient(9, p)
+        rate(4, p) = 0.5_wp*factor*(gradient(2, p) + gradient(4, p))
+        rate(5, p) = 0.5_wp*factor*(gradient(6, p) + gradient(8, p))
+        rate(6, p) = 0.5_wp*factor*(gradient(3, p) + gradient(7, p))
+        trace(p) = gradient(1, p) + gradient(5, p) + gradient(9, p)
+      end do
     case default
       do p = 1, n
         call stretching(kin%sim_type, gradient(:, p), d)
@@ -239,6 +250,68 @@ contains
       end do
     end select
   end subroutine strain_rates
+
+  !> D of at most `width` points component by component, and its traces; 0 behind the last point.
+  pure subroutine rates_by_component(kin, n, gradient, rate, trace)
+    !> Component counts.
+    type(kinematics_t), intent(in) :: kin
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Velocity gradients. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(kin%ngrad, n)
+    !> D, xx yy zz xy yz zx, 0 where the TYPE has none. [1/s]
+    real(wp), intent(out) :: rate(width, 6)
+    !> tr D. [1/s]
+    real(wp), intent(out) :: trace(width)
+    real(wp) :: d(6)
+    integer :: p
+
+    rate(n + 1:, :) = 0.0_wp
+    select case (kin%sim_type)
+    case (type_1d)
+      rate = 0.0_wp
+      do p = 1, n
+        rate(p, 1) = gradient(1, p)
+      end do
+    case (type_plane_strain)
+      rate = 0.0_wp
+      do p = 1, n
+        rate(p, 1) = gradient(1, p)
+        rate(p, 2) = gradient(4, p)
+        rate(p, 4) = 0.5_wp*(gradient(2, p) + gradient(3, p))
+      end do
+    case (type_3d)
+      call rates_3d(n, gradient, rate)
+    case default
+      do p = 1, n
+        call stretching(kin%sim_type, gradient(:, p), d)
+        rate(p, :) = d
+      end do
+    end select
+    do p = 1, width
+      trace(p) = rate(p, 1) + rate(p, 2) + rate(p, 3)
+    end do
+  end subroutine rates_by_component
+
+  !> D in 3D component by component.
+  pure subroutine rates_3d(n, gradient, rate)
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Velocity gradients. [1/s] (9, n)
+    real(wp), intent(in) :: gradient(9, n)
+    !> D, xx yy zz xy yz zx. [1/s]
+    real(wp), intent(out) :: rate(width, 6)
+    integer :: p
+
+    do p = 1, n
+      rate(p, 1) = gradient(1, p)
+      rate(p, 2) = gradient(5, p)
+      rate(p, 3) = gradient(9, p)
+      rate(p, 4) = 0.5_wp*(gradient(2, p) + gradient(4, p))
+      rate(p, 5) = 0.5_wp*(gradient(6, p) + gradient(8, p))
+      rate(p, 6) = 0.5_wp*(gradient(3, p) + gradient(7, p))
+    end do
+  end subroutine rates_3d
 
   !> Shear rates sqrt(2 D':D').
   pure subroutine shear_rates(kin, n, gradient, rate)

@@ -240,7 +240,7 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point that is turned inside out or out of all bounds; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: all_f(n, 3, 3), all_j(n), f(3, 3), b(3, 3), j, growth, six(6)
+    real(wp) :: all_f(n, 3, 3), all_j(n), f(3, 3), j, growth, six(6)
     integer :: p
 
     associate (unused => mass, unused_volume => volume)
@@ -251,12 +251,15 @@ contains
       f = all_f(p, :, :)
       j = all_j(p)
       history(self%n_f + 2, p) = history(self%n_f + 2, p) + dt
-      call elastic_part(self, history(:, p), f, growth)
+      growth = muscle(self, history(self%n_f + 1, p), history(self%n_f + 2, p))
+      f(:, 1) = f(:, 1)/growth
       j = j/growth
-      b = matmul(f, transpose(f))
-      b = b - (b(1, 1) + b(2, 2) + b(3, 3))/3.0_wp*identity
-      b = (self%shear*j**(-5.0_wp/3.0_wp))*b + (self%bulk*log(j)/j)*identity
-      six = [b(1, 1), b(2, 2), b(3, 3), b(1, 2), b(2, 3), b(3, 1)]
+      ! The components of F transpose(F); `matmul` would be a call of the run-time library.
+      six = [sum(f(1, :)**2), sum(f(2, :)**2), sum(f(3, :)**2), sum(f(1, :)*f(2, :)), &
+             sum(f(2, :)*f(3, :)), sum(f(3, :)*f(1, :))]
+      six(1:3) = six(1:3) - (six(1) + six(2) + six(3))/3.0_wp
+      six = (self%shear*j**(-5.0_wp/3.0_wp))*six
+      six(1:3) = six(1:3) + self%bulk*log(j)/j
       stress(:, p) = six(:self%kin%nstress)
     end do
   end subroutine fish_update_stress

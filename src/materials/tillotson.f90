@@ -9,13 +9,16 @@
 !! branch is P2 without B, so that P jumps there.
 module mpm_tillotson
   use mpm_bracket, only: bracket_t
+  use mpm_corotation, only: width
   use mpm_kinds, only: wp
   implicit none
   private
-  public :: densest, thinnest, tillotson_t
+  public :: densest, hottest, thinnest, tillotson_t
 
   !> Densities over rho_0 beyond which there is no pressure.
   real(wp), parameter :: densest = 100.0_wp, thinnest = 1.0e-12_wp
+  !> Energy at which a point is out of all bounds. [J/kg]
+  real(wp), parameter :: hottest = 1.0e20_wp
   !> Smallest w = E/(E_0 eta**2) + 1; P2 has a pole at 0.
   real(wp), parameter :: pole = 1.0e-6_wp
   !> Intervals of the table of the cold curve, and its first density over rho_0.
@@ -49,6 +52,8 @@ module mpm_tillotson
     procedure :: tabulate => tillotson_tabulate
     !> Pressure.
     procedure :: pressure => tillotson_pressure
+    !> Energies and pressures at the end of a step, where the pressure is P2.
+    procedure :: settle => tillotson_settle
     !> Energy of the cold curve.
     procedure :: cold => tillotson_cold
     !> Square of the speed of sound.
@@ -121,6 +126,66 @@ contains
       slopes(2) = slopes(2) + (p3(1) - p2(1))/(self%vapour - self%melt)
     end if
   end subroutine tillotson_pressure
+
+  !> Energies and pressures at the end of a step, E = E_s - (P_n + P2(rho, E)) dv/2, `width`
+  !> points at a time: a loop of another length could have its last points rounded otherwise.
+  !!
+  !! With h = rho dv/2, c = E_0 eta**2 and s = E_s - (P_n + A mu + B mu**2) dv/2 the
+  !! energy is the larger root of
+  !!
+  !!     (1 + h a) E**2 + ((1 + h a + h b) c - s) E - s c = 0.
+  !!
+  !! Points are not found that have a share of P3, that are hotter than c, near the pole, or pressed
+  !! together so much that the quadratic equation loses digits. The loop has no branches, and
+  !! nothing in it overflows, whatever such points give.
+  pure subroutine tillotson_settle(self, rho, swell, before, start, e, p, found)
+    !> Constants.
+    class(tillotson_t), intent(in) :: self
+    !> Densities within their bounds. [kg/m3]
+    real(wp), intent(in) :: rho(width)
+    !> Changes of the volume over the volume, rho dv, at least -exp(60).
+    real(wp), intent(in) :: swell(width)
+    !> Pressures P_n, at most 1e150 in size. [Pa]
+    real(wp), intent(in) :: before(width)
+    !> Energies E_s without the work of the step, at most 1e250. [J/kg]
+    real(wp), intent(in) :: start(width)
+    !> Energies. [J/kg]
+    real(wp), intent(out) :: e(width)
+    !> Pressures. [Pa]
+    real(wp), intent(out) :: p(width)
+    !> 1 for points that are found, 0 for others.
+    real(wp), intent(out) :: found(width)
+    real(wp), parameter :: far = 1.0e60_wp, least = 1.0e-60_wp
+    real(wp) :: per_density, eta, mu, c, kept, h, cold, s, alpha, slope, beta, square, energy, hot
+    integer :: i
+
+    per_density = 1.0_wp/self%density
+    do i = 1, width
+      mu = (rho(i) - self%density)*per_density
+      eta = rho(i)*per_density
+      c = self%energy*eta*eta
+      ! 1 from rho_IV on, 0 below.
+      kept = 0.5_wp + sign(0.5_wp, rho(i) - self%thin)
+      cold = mu*(self%bulk + kept*self%bulk2*mu)
+      h = 0.5_wp*swell(i)
+      s = max(-far, min(far, start(i) - h*(before(i) + cold)/rho(i)))
+      alpha = 1.0_wp + h*self%a
+      slope = alpha + h*self%b
+      beta = c*slope - s
+      square = beta*beta + 4.0_wp*alpha*s*c
+      energy = 2.0_wp*s*c/max(beta + sqrt(max(0.0_wp, square)), least)
+      e(i) = energy
+      p(i) = (self%a + self%b*c/max(energy + c, pole*c))*rho(i)*energy + cold
+      ! 1 for a share of P3.
+      hot = (0.5_wp - sign(0.5_wp, mu)) &
+            *(0.5_wp + sign(0.5_wp, energy - (kept*self%melt + (1.0_wp - kept)*self%vapour)))
+      found(i) = (1.0_wp - hot)*(0.5_wp + sign(0.5_wp, beta)) &
+                 *(0.5_wp + sign(0.5_wp, slope - 0.25_wp)) &
+                 *(0.5_wp + sign(0.5_wp, square - 0.25_wp*beta*beta)) &
+                 *(0.5_wp - sign(0.5_wp, pole*c - (energy + c))) &
+                 *(0.5_wp + sign(0.5_wp, hottest - abs(energy)))
+    end do
+  end subroutine tillotson_settle
 
   !> Slope of the cold curve over eta, dE/deta = rho_0 P/rho**2.
   pure function cold_slope(self, eta, e) result(slope)

@@ -1,7 +1,7 @@
 !> A compressible fluid with the Tillotson equation of state, for shocks.
 module mpm_tillotson_eos_fluid
   use mpm_advance, only: exponential
-  use mpm_corotation, only: strain_rates
+  use mpm_corotation, only: rates_by_component, width
   use mpm_description, only: description_t
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
@@ -10,7 +10,7 @@ module mpm_tillotson_eos_fluid
   use mpm_material, only: material_t
   use mpm_properties, only: properties_t
   use mpm_strings, only: excerpt, string_t
-  use mpm_tillotson, only: densest, thinnest, tillotson_t
+  use mpm_tillotson, only: densest, hottest, thinnest, tillotson_t
   implicit none
   private
   public :: tillotson_eos_fluid_t
@@ -18,10 +18,10 @@ module mpm_tillotson_eos_fluid
   !> Bounds of the constants, far from those of any material in any units: with them no pressure,
   !! energy or slope of a density within its bounds is beyond what a number can hold.
   real(wp), parameter :: least = 1.0e-20_wp, most = 1.0e20_wp
-  !> Energy at which a point is out of all bounds. [J/kg]
-  real(wp), parameter :: hottest = 1.0e20_wp
   !> Largest logarithm of a ratio of volumes in a step.
   real(wp), parameter :: fastest = 60.0_wp
+  !> Rates and pressures from which a point is out of all bounds; no constants lead there. [1/s, Pa]
+  real(wp), parameter :: wildest = 1.0e100_wp, hardest = 1.0e120_wp
 
   !> Tillotson fluid with viscosity, cavitation and energy balance.
   !!
@@ -183,38 +183,206 @@ contains
     real(wp), intent(inout) :: history(self%n_history, n)
     !> First point without a pressure; 0 when there is none.
     integer, intent(out) :: first_bad
-    real(wp) :: rate(self%kin%nstress, n), trace(n), shrunk(n), before, rho
-    real(wp) :: growth, push, p, friction
-    integer :: i
-    logical :: good
+    integer :: a
 
-    call strain_rates(self%kin, n, 1.0_wp, gradient, rate, trace)
-    call exponential(n, -dt*trace, shrunk)
     first_bad = 0
-    good = .true.
-    do i = 1, n
-      before = -(stress(1, i) + stress(2, i) + stress(3, i))/3.0_wp
-      rho = mass(i)/volume(i)
-      ! What the volume per mass has grown by: v (1 - exp(-dt tr D)).
-      good = rho <= densest*self%state%density .and. rho >= thinnest*self%state%density .and. &
-             abs(dt*trace(i)) < fastest .and. abs(before) < huge(1.0_wp)/densest
-      if (.not. good) exit
-      growth = (1.0_wp - shrunk(i))/rho
-      push = -self%artificial*min(trace(i), 0.0_wp)
-      rate(1:3, i) = rate(1:3, i) - trace(i)/3.0_wp
-      friction = sum(rate(1:3, i)**2) + 2.0_wp*sum(rate(4:, i)**2)
-      friction = 2.0_wp*self%viscosity*friction*dt/rho
-      call balance(self, rho, growth, before + push, friction, history(1, i), p, good)
-      if (.not. good) exit
-      stress(:, i) = 0.0_wp
-      if (p > self%cavitation) then
-        stress(:, i) = 2.0_wp*self%viscosity*rate(:, i)
-        p = p + push
-      end if
-      stress(1:3, i) = stress(1:3, i) - p
+    do a = 1, n, width
+      call advance(self, min(width, n - a + 1), dt, gradient(1, a), mass(a), volume(a), &
+                   stress(1, a), history(1, a), first_bad)
+      if (first_bad == 0) cycle
+      first_bad = first_bad + a - 1
+      return
     end do
-    if (.not. good) first_bad = i
   end subroutine tillotson_eos_fluid_update_stress
+
+  !> The stress of so many points at the end of a step that their scratch has a fixed size.
+  pure subroutine advance(self, n, dt, gradient, mass, volume, stress, energy, first_bad)
+    !> The material.
+    class(tillotson_eos_fluid_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> Velocity gradients of the step. [1/s] (ngrad, n)
+    real(wp), intent(in) :: gradient(self%kin%ngrad, n)
+    !> Masses. [kg] (n)
+    real(wp), intent(in) :: mass(n)
+    !> Volumes at the end of the step. [m3] (n)
+    real(wp), intent(in) :: volume(n)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(inout) :: stress(self%kin%nstress, n)
+    !> Energies. [J/kg] (n)
+    real(wp), intent(inout) :: energy(n)
+    !> First point without a pressure; 0 when there is none.
+    integer, intent(out) :: first_bad
+    real(wp) :: rate(width, 6)
+    real(wp), dimension(width) :: trace, swell, rho, before, push, heat, p, good, e
+    integer :: i
+
+    ! Behind the last point there are more, at rest: loops of `width` round all points alike.
+    rho(n + 1:) = self%state%density
+    before(n + 1:) = 0.0_wp
+    e(n + 1:) = 0.0_wp
+    e(:n) = energy
+    call rates_by_component(self%kin, n, gradient, rate, trace)
+    swell = -dt*trace
+    call exponential(width, swell, p)
+    do i = 1, n
+      rho(i) = mass(i)/volume(i)
+      before(i) = -(stress(1, i) + stress(2, i) + stress(3, i))/3.0_wp
+    end do
+    call measure(self, dt, rate, trace, swell, p, rho, before, push, heat, good)
+    call balance_block(self, n, rho, swell, before, heat, good, e, p, first_bad)
+    if (first_bad > 0) return
+    energy = e(:n)
+    do i = 1, width
+      ! 1 above P_cav; there is no viscosity at it.
+      good(i) = 0.5_wp - sign(0.5_wp, self%cavitation - p(i))
+      p(i) = p(i) + good(i)*push(i)
+      good(i) = 2.0_wp*self%viscosity*good(i)
+    end do
+    call assemble(self%kin%nstress, n, good, rate, p, stress)
+  end subroutine advance
+
+  !> What the balance of energy needs of so many points; those out of all bounds count as at rest.
+  pure subroutine measure(self, dt, rate, trace, swell, shrunk, rho, before, push, heat, good)
+    !> The material.
+    class(tillotson_eos_fluid_t), intent(in) :: self
+    !> Time step. [s]
+    real(wp), intent(in) :: dt
+    !> D on entry, its deviator on exit. [1/s]
+    real(wp), intent(inout) :: rate(width, 6)
+    !> tr D. [1/s]
+    real(wp), intent(in) :: trace(width)
+    !> -dt tr D on entry, what volumes have grown by over the volumes on exit.
+    real(wp), intent(inout) :: swell(width)
+    !> exp(-dt tr D).
+    real(wp), intent(in) :: shrunk(width)
+    !> Densities. [kg/m3]
+    real(wp), intent(inout) :: rho(width)
+    !> Pressures at the start on entry, with artificial ones of the end on exit. [Pa]
+    real(wp), intent(inout) :: before(width)
+    !> Artificial pressures. [Pa]
+    real(wp), intent(out) :: push(width)
+    !> Energies from viscosity. [J/kg]
+    real(wp), intent(out) :: heat(width)
+    !> 1 for points within bounds, 0 for others.
+    real(wp), intent(out) :: good(width)
+    real(wp) :: lowest, highest, factor, third, t, r1, r2, r3, r4, r5, r6
+    integer :: i
+
+    lowest = thinnest*self%state%density
+    highest = densest*self%state%density
+    factor = 2.0_wp*self%viscosity*dt
+    do i = 1, width
+      third = trace(i)/3.0_wp
+      r1 = rate(i, 1) - third
+      r2 = rate(i, 2) - third
+      r3 = rate(i, 3) - third
+      r4 = rate(i, 4)
+      r5 = rate(i, 5)
+      r6 = rate(i, 6)
+      t = max(abs(r1), abs(r2), abs(r3), abs(r4), abs(r5), abs(r6), abs(trace(i)))
+      ! As a product: with a condition the loop has a branch.
+      t = (0.5_wp + sign(0.5_wp, wildest - t))*(0.5_wp - sign(0.5_wp, abs(swell(i)) - fastest)) &
+          *(0.5_wp - sign(0.5_wp, abs(before(i)) - hardest)) &
+          *(0.5_wp + sign(0.5_wp, rho(i) - lowest))*(0.5_wp + sign(0.5_wp, highest - rho(i)))
+      good(i) = t
+      rate(i, 1) = t*r1
+      rate(i, 2) = t*r2
+      rate(i, 3) = t*r3
+      rate(i, 4) = t*r4
+      rate(i, 5) = t*r5
+      rate(i, 6) = t*r6
+      rho(i) = max(lowest, min(highest, rho(i)))
+      push(i) = -self%artificial*min(t*trace(i), 0.0_wp)
+      before(i) = t*before(i) + push(i)
+      swell(i) = t*(1.0_wp - shrunk(i))
+    end do
+    do i = 1, width
+      heat(i) = factor*(rate(i, 1)**2 + rate(i, 2)**2 + rate(i, 3)**2 &
+                        + 2.0_wp*(rate(i, 4)**2 + rate(i, 5)**2 + rate(i, 6)**2))/rho(i)
+    end do
+  end subroutine measure
+
+  !> Energies and pressures at the end of a step: most in closed form, the others one by one.
+  pure subroutine balance_block(self, n, rho, swell, before, heat, good, e, p, first_bad)
+    !> The material.
+    class(tillotson_eos_fluid_t), intent(in) :: self
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Densities at the end. [kg/m3]
+    real(wp), intent(in) :: rho(width)
+    !> What volumes have grown by, over the volumes.
+    real(wp), intent(in) :: swell(width)
+    !> Pressures at the start and artificial pressures at the end. [Pa]
+    real(wp), intent(in) :: before(width)
+    !> Energies from viscosity. [J/kg]
+    real(wp), intent(in) :: heat(width)
+    !> 1 for points within bounds, 0 for others.
+    real(wp), intent(in) :: good(width)
+    !> Energies. [J/kg]
+    real(wp), intent(inout) :: e(width)
+    !> Pressures at the end, at least P_cav. [Pa]
+    real(wp), intent(out) :: p(width)
+    !> First point without a pressure; 0 when there is none.
+    integer, intent(out) :: first_bad
+    real(wp) :: next(width), found(width), start(width), lifted
+    integer :: i
+    logical :: exists
+
+    if (self%isothermal) then
+      found = 0.0_wp
+      p = 0.0_wp
+    else
+      start = e + heat
+      call self%state%settle(rho, swell, before, start, next, p, found)
+      do i = 1, width
+        ! 0 where P_cav is reached, and the energy stays, or nothing is found.
+        lifted = found(i)*(0.5_wp - sign(0.5_wp, self%cavitation - p(i)))
+        e(i) = lifted*next(i) + (1.0_wp - lifted)*e(i)
+        p(i) = max(p(i), self%cavitation)
+      end do
+    end if
+    first_bad = 0
+    do i = 1, n
+      exists = good(i) > 0.0_wp
+      if (exists .and. .not. found(i) > 0.0_wp) then
+        call balance(self, rho(i), swell(i)/rho(i), before(i), heat(i), e(i), p(i), exists)
+      end if
+      if (exists) cycle
+      first_bad = i
+      return
+    end do
+  end subroutine balance_block
+
+  !> Stresses of pressures and deviators.
+  pure subroutine assemble(nstress, n, factor, rate, p, stress)
+    !> Components of a stress.
+    integer, intent(in) :: nstress
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Deviators of the stresses over those of D. [Pa s]
+    real(wp), intent(in) :: factor(width)
+    !> Deviators of D. [1/s]
+    real(wp), intent(in) :: rate(width, 6)
+    !> Pressures. [Pa]
+    real(wp), intent(in) :: p(width)
+    !> Cauchy stresses. [Pa] (nstress, n)
+    real(wp), intent(out) :: stress(nstress, n)
+    integer :: c, i
+
+    do i = 1, n
+      stress(1, i) = factor(i)*rate(i, 1) - p(i)
+      stress(2, i) = factor(i)*rate(i, 2) - p(i)
+      stress(3, i) = factor(i)*rate(i, 3) - p(i)
+    end do
+    do c = 4, nstress
+      do i = 1, n
+        stress(c, i) = factor(i)*rate(i, c)
+      end do
+    end do
+  end subroutine assemble
 
   !> Energy and pressure at the end of a step: E = E_n + heat - (P_n + P(rho, E)) dv/2.
   pure subroutine balance(self, rho, growth, before, heat, e, p, good)
