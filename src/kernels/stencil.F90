@@ -342,20 +342,42 @@ contains
     real(wp) :: slope(block_size*stencil%width*stencil%dim)
 
     if (stencil%width == 2) then
-      select case (stencil%dim)
-      case (1)
-        call weights_1d_2(stencil, n, x, base, w, dw)
-      case (2)
-        call weights_2d_2(stencil, n, x, base, w, dw)
-      case (3)
-        call weights_3d_2(stencil, n, x, base, w, dw)
-      end select
+      call hat_weights(stencil, stencil%dim, n, x, w, dw)
     else
       call many_weights(stencil, n, x, extent, base, value, slope)
       call turn(stencil%width*stencil%dim, n, value, w)
       call turn(stencil%width*stencil%dim, n, slope, dw)
     end if
   end subroutine plain_weights
+
+  !> Values and derivatives of hats, from the coordinates that P2G and G2P use: mass and momentum
+  !! of a node must be sums with the same functions.
+  pure subroutine hat_weights(stencil, dim, n, x, w, dw)
+    !> Basis.
+    type(stencil_t), intent(in) :: stencil
+    !> Dimensions of the grid.
+    integer, intent(in) :: dim
+    !> Number of points.
+    integer, intent(in) :: n
+    !> Positions. [m] (dim, n)
+    real(wp), intent(in) :: x(dim, n)
+    !> Values. (2, dim, n)
+    real(wp), intent(out) :: w(2, dim, n)
+    !> Derivatives. [1/m] (2, dim, n)
+    real(wp), intent(out) :: dw(2, dim, n)
+    real(wp) :: xi(n, dim)
+    integer :: p, d
+
+    call hat_coordinates(stencil, dim, n, x, n, xi)
+    do p = 1, n
+      do d = 1, dim
+        w(1, d, p) = 1.0_wp - xi(p, d)
+        w(2, d, p) = xi(p, d)
+        dw(1, d, p) = -1.0_wp/stencil%h(d)
+        dw(2, d, p) = 1.0_wp/stencil%h(d)
+      end do
+    end do
+  end subroutine hat_weights
 
   !> Make the first dimension the last one.
   pure subroutine turn(n_values, n, values, turned)
@@ -729,11 +751,6 @@ contains
 #undef AVERAGED
 #undef DIM
 #define DIM 1
-#define NAME weights_1d_2
-#define WIDTH 2
-#include "weights_template.inc"
-#undef NAME
-#undef WIDTH
 #define NAME weights_1d_3
 #define WIDTH 3
 #include "weights_template.inc"
@@ -746,11 +763,6 @@ contains
 #undef WIDTH
 #undef DIM
 #define DIM 2
-#define NAME weights_2d_2
-#define WIDTH 2
-#include "weights_template.inc"
-#undef NAME
-#undef WIDTH
 #define NAME weights_2d_3
 #define WIDTH 3
 #include "weights_template.inc"
@@ -763,11 +775,6 @@ contains
 #undef WIDTH
 #undef DIM
 #define DIM 3
-#define NAME weights_3d_2
-#define WIDTH 2
-#include "weights_template.inc"
-#undef NAME
-#undef WIDTH
 #define NAME weights_3d_3
 #define WIDTH 3
 #include "weights_template.inc"
