@@ -66,6 +66,7 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
         help="time on the wall, or of the processors, which suffers less on a busy machine",
     )
     parser.add_argument("--phases", action="store_true", help="share of each phase, below its row")
+    parser.add_argument("--targets", action="store_true", help="only the scenes with a target")
     parser.add_argument("--kernel", action="store_true", help="only the bare kernel and the triad")
     parser.add_argument("--json", type=Path, help="also write everything to this file")
     parser.add_argument("--compare", type=Path, help="compare with a file that --json wrote")
@@ -82,6 +83,8 @@ def wanted(arguments: argparse.Namespace) -> list[tuple[str, int, int]]:
     threads = arguments.threads or [1]
     if arguments.quick:
         return list(QUICK)
+    if arguments.targets:
+        return [(name, arguments.points, 1) for name in report.TARGETS]
     names = arguments.scene or [scene.name for scene in SCENES]
     rows = [
         (name, SPARSE if name == "3d-sparse" else arguments.points, count)
@@ -107,7 +110,12 @@ def time_scenes(arguments: argparse.Namespace) -> list[report.Row]:
         with tempfile.TemporaryDirectory() as folder:
             case = write_scene(scene, Path(folder), points)
             repeat, seconds = (1, 0.3) if arguments.quick else (arguments.repeat, arguments.seconds)
-            row = measure(arguments.program, case, threads, repeat, seconds, arguments.clock)
+            kernel = ""
+            if report.belongs(name, case.points, threads):
+                kernel = arguments.kernel_program
+            row = measure(
+                arguments.program, case, threads, repeat, seconds, arguments.clock, kernel
+            )
         rows.append(row)
         print(report.line(row), flush=True)
         if arguments.phases:

@@ -103,13 +103,25 @@ def stated_memory(text: str) -> float:
 
 
 def measure(
-    program: str, case: Case, threads: int, repeat: int, seconds: float, clock: str
+    program: str,
+    case: Case,
+    threads: int,
+    repeat: int,
+    seconds: float,
+    clock: str,
+    kernel: str = "",
 ) -> dict[str, object]:
-    """Measure one case; `clock` is `wall` or `cpu`."""
+    """Measure one case; `clock` is `wall` or `cpu`.
+
+    With a bare kernel it is run before each measurement: the speed of a shared machine changes from
+    minute to minute.
+    """
     per_step = GUESS * case.points
     steps = SHORT + max(10, min(round(seconds / per_step), int(case.scene.duration / case.dt)))
-    samples, set_up, memory = [], [], 0
+    samples, kernels, set_up, memory = [], [], [], 0
     for _ in range(repeat):
+        if kernel:
+            kernels.append(reference(kernel)["kernel_ns"])
         low = run(command_of(program, case, SHORT, threads, "-q"), case.folder)
         high = run(command_of(program, case, steps, threads, "-q"), case.folder)
         check = run(command_of(program, case, SHORT, threads, "-q", "--check"), case.folder)
@@ -117,6 +129,7 @@ def measure(
         samples.append(1e9 * spent / ((steps - SHORT) * case.points))
         set_up.append(check.wall)
         memory = max(memory, high.memory)
+    ratios = [sample / beside for sample, beside in zip(samples, kernels, strict=False)]
     told = timed_frames(program, case, threads, steps, binary=False)
     binary = timed_frames(program, case, threads, steps, binary=True)
     loop = {name: s for name, s in phases(told).items() if name not in ("set-up", "output")}
@@ -128,6 +141,7 @@ def measure(
         "steps": [SHORT, steps],
         "clock": clock,
         "ns_per_point_and_step": spread(samples),
+        **({"kernel_ns": spread(kernels), "kernels": spread(ratios)} if kernel else {}),
         "set_up_s": min(set_up),
         "bytes_per_point": memory / case.points,
         "stated_bytes_per_point": stated_memory(told) / case.points,

@@ -63,19 +63,29 @@ def targets(rows: list[Row], reference: dict[str, float]) -> list[str]:
         f"{reference['bytes_per_point']:.0f} bytes take {roofline:.1f} ns",
         f"parts of the kernel: P2G {reference['p2g_ns']:.1f}, nodes {reference['nodes_ns']:.1f}, "
         f"G2P with motion and stress {reference['g2p_ns']:.1f} ns",
-        f"{'scene':20}{'ns':>8}{'target':>8}{'scaled':>8}{'/kernel':>9}{'/roofline':>11}",
+        f"{'scene':20}{'ns':>8}{'target':>8}{'kernel':>8}{'scaled':>8}{'of it':>7}{'/kernel':>9}"
+        f"{'/roofline':>11}",
     ]
-    for row in rows:
-        if row["scene"] not in TARGETS or row["threads"] != 1:
-            continue
-        if row["points"] not in TARGET_POINTS:
-            continue
+    for row in filter(has_target, rows):
         cost, target = row["ns_per_point_and_step"]["median"], TARGETS[row["scene"]]
+        beside = row.get("kernel_ns", {"median": kernel})["median"]
+        ratio = row.get("kernels", {"median": cost / kernel})["median"]
         lines.append(
-            f"{row['scene']:20}{cost:>8.1f}{target:>8.0f}{target * kernel / KERNEL:>8.0f}"
-            f"{cost / kernel:>9.2f}{cost / roofline:>11.1f}"
+            f"{row['scene']:20}{cost:>8.1f}{target:>8.0f}{beside:>8.1f}"
+            f"{target * beside / KERNEL:>8.1f}{ratio * KERNEL / target:>7.2f}{ratio:>9.2f}"
+            f"{cost / roofline:>11.1f}"
         )
     return lines
+
+
+def has_target(row: Row) -> bool:
+    """Return whether a row is one of those that the targets are for."""
+    return belongs(row["scene"], row["points"], row["threads"])
+
+
+def belongs(scene: str, points: int, threads: int) -> bool:
+    """Return whether a measurement is one of those that the targets are for."""
+    return scene in TARGETS and threads == 1 and points in TARGET_POINTS
 
 
 def speedups(rows: list[Row]) -> list[str]:

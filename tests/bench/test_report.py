@@ -57,7 +57,21 @@ def test_targets_scale_with_the_kernel() -> None:
     rows = [row("3d-linear", 1, 60.0), row("3d-linear", 2, 30.0), row("plane-contact", 1, 30.0)]
     head, _, _, *lines = targets(rows, reference)
     assert "320 bytes take 20.0 ns" in head
-    assert [text.split() for text in lines] == [["3d-linear", "60.0", "60", "120", "0.50", "3.0"]]
+    assert [text.split() for text in lines] == [
+        ["3d-linear", "60.0", "60", "120.0", "120.0", "0.50", "0.50", "3.0"]
+    ]
+    # What ran beside the measurements counts, where there is such.
+    rows[0] |= {"kernel_ns": {"median": 90.0}, "kernels": {"median": 0.75}}
+    assert targets(rows, reference)[-1].split() == [
+        "3d-linear",
+        "60.0",
+        "60",
+        "90.0",
+        "90.0",
+        "0.75",
+        "0.75",
+        "3.0",
+    ]
 
 
 def test_comparison_has_the_rows_of_both() -> None:
