@@ -23,30 +23,44 @@ ROOT = Path(__file__).resolve().parent.parent
 
 @dataclass(frozen=True)
 class Mutation:
-    """A defect: texts to be replaced in one source file."""
+    """A defect: texts to be replaced in a source file, or in several."""
 
     name: str
     what: str
     file: str
     #: Old and new texts; each old text must be there exactly once.
     edits: tuple[tuple[str, str], ...]
+    #: Other files with the same edits.
+    others: tuple[str, ...] = ()
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """All files with the defect."""
+        return (self.file, *self.others)
 
 
 MUTATIONS = (
     Mutation(
         "gradient-sign",
-        "one sign in the gradient of the linear functions (P2G and G2P)",
-        "src/kernels/weights_template.inc",
-        (("dw(1, d, p) = -inverse_h(d)", "dw(1, d, p) = inverse_h(d)"),),
+        "one sign in the gradient of the linear functions (P2G in 1D and 2D)",
+        "src/kernels/p2g_hat_template.inc",
+        (
+            (
+                "fx = (-volume(p)*inverse_h(1))*slope_x(l)",
+                "fx = (-volume(p)*inverse_h(1))*abs(slope_x(l))",
+            ),
+            (
+                "fy = ((-volume(p)*inverse_h(1))*slope_x(l))*fy",
+                "fy = ((-volume(p)*inverse_h(1))*abs(slope_x(l)))*fy",
+            ),
+        ),
     ),
     Mutation(
         "gradients-reversed",
         "all gradients of the linear functions have the wrong sign (cancels in the motion)",
-        "src/kernels/weights_template.inc",
-        (
-            ("dw(1, d, p) = -inverse_h(d)", "dw(1, d, p) = inverse_h(d)"),
-            ("dw(2, d, p) = inverse_h(d)", "dw(2, d, p) = -inverse_h(d)"),
-        ),
+        "src/kernels/p2g_hat_template.inc",
+        (("inverse_h = 1.0_wp/stencil%h(:DIM)", "inverse_h = -1.0_wp/stencil%h(:DIM)"),),
+        others=("src/kernels/g2p_hat_template.inc",),
     ),
     Mutation(
         "averaged-gradient",
@@ -149,8 +163,8 @@ MUTATIONS = (
     Mutation(
         "hoop-stress",
         "no hoop stress in the nodal forces of TYPE 4",
-        "src/kernels/p2g_template.inc",
-        (("hoop(1) = t(3)/max(xb(1, j), r_floor)", "hoop(1) = 0.0_wp*t(3)"),),
+        "src/kernels/p2g_hat_template.inc",
+        (("hoop(1) = -volume(p)*stress(3, p)/r", "hoop(1) = -0.0_wp*stress(3, p)/r"),),
     ),
     Mutation(
         "swirl-inertia",
@@ -164,8 +178,8 @@ MUTATIONS = (
     Mutation(
         "body-force-twice",
         "gravity counts twice",
-        "src/solvers/explicit_steps.f90",
-        (("mass(i)*body_force(:nvel)\n", "2.0_wp*mass(i)*body_force(:nvel)\n"),),
+        "src/kernels/node_update.f90",
+        (("+ body_force(i)*merge(", "+ 2.0_wp*body_force(i)*merge("),),
     ),
     Mutation(
         "frictionless",
@@ -251,14 +265,14 @@ class Workshop:
 
     def try_one(self, mutation: Mutation, *, all_rows: bool) -> list[str]:
         """Apply a mutation, build, run the quick tier; return the failed rows."""
-        path = self.tree / mutation.file
-        original = path.read_text()
-        text = original
-        for old, new in mutation.edits:
-            if text.count(old) != 1:
-                sys.exit(f"{mutation.file}: not once there: {old.strip()}")
-            text = text.replace(old, new)
-        path.write_text(text)
+        originals = {self.tree / file: (self.tree / file).read_text() for file in mutation.files}
+        for path, original in originals.items():
+            text = original
+            for old, new in mutation.edits:
+                if text.count(old) != 1:
+                    sys.exit(f"{path.relative_to(self.tree)}: not once there: {old.strip()}")
+                text = text.replace(old, new)
+            path.write_text(text)
         try:
             run(["cmake", "--build", self.build, "--target", "mpm3d-verification"])
             command = [sys.executable, "-m", "harness", "--quick", "--fresh"]
@@ -268,7 +282,8 @@ class Workshop:
             command += [] if all_rows else ["--fail-fast"]
             result = subprocess.run(command, capture_output=True, text=True, check=False)
         finally:
-            path.write_text(original)
+            for path, original in originals.items():
+                path.write_text(original)
         if result.returncode not in (0, 1):
             sys.exit(result.stderr)
         rows = re.findall(r"^ *\d+/\d+  FAILED +(.*)$", result.stdout, re.MULTILINE)
