@@ -5,6 +5,7 @@
 module mpm_signals
   use, intrinsic :: iso_c_binding, only: c_funloc, c_funptr, c_int, c_null_funptr
   use, intrinsic :: iso_c_binding, only: c_intptr_t
+  use mpm_kinds, only: lp
   implicit none
   private
   public :: ignore_file_limit, save_was_asked, signal_name, stop_signal, watch_signals
@@ -12,8 +13,14 @@ module mpm_signals
   !> Numbers of signals on Linux.
   integer(c_int), parameter :: sigint = 2, sigusr1 = 10, sigterm = 15, sigxfsz = 25
 
+  !> Signals that come within this part of a second are one: `timeout` sends its signal to the program
+  !> and to its group, and batch systems to each process of a job.
+  real, parameter :: one_request = 0.25
+
   !> The first signal that asked the program to stop, or 0.
   integer(c_int), volatile :: stop_number = 0
+  !> Clock count when it came.
+  integer(lp), volatile :: stop_clock = 0
   !> Whether SIGUSR1 came since it was last asked for.
   logical, volatile :: save_asked = .false.
 
@@ -29,6 +36,15 @@ module mpm_signals
       !> What it did before.
       type(c_funptr) :: earlier
     end function c_signal
+    !> C `raise`: send a signal to the program itself.
+    function c_raise(number) bind(c, name='raise') result(status)
+      import :: c_int
+      implicit none
+      !> The signal.
+      integer(c_int), intent(in), value :: number
+      !> 0 when it was sent.
+      integer(c_int) :: status
+    end function c_raise
   end interface
 
 contains
@@ -81,15 +97,23 @@ contains
     if (number == sigint) name = 'SIGINT'
   end function signal_name
 
-  !> Keep the signal; the next one of these ends the program at once.
+  !> Keep the signal; a later request ends the program at once.
   subroutine on_stop(number) bind(c)
     !> The signal.
     integer(c_int), intent(in), value :: number
     type(c_funptr) :: ignored
+    integer(lp) :: now, rate
+    integer(c_int) :: status
 
-    stop_number = number
-    ignored = c_signal(sigint, c_null_funptr)
-    ignored = c_signal(sigterm, c_null_funptr)
+    ! The clock, `signal` and `raise` are among the few calls that a handler may make.
+    call system_clock(now, rate)
+    if (stop_number == 0) then
+      stop_clock = now
+      stop_number = number
+    else if (real(now - stop_clock) > one_request*real(rate)) then
+      ignored = c_signal(number, c_null_funptr)
+      status = c_raise(number)
+    end if
   end subroutine on_stop
 
   !> Keep that a checkpoint is asked for.
