@@ -98,6 +98,9 @@ contains
       call self%model%bodies(i)%body%points%write_table(error)
       if (allocated(error)) return
     end do
+    do i = 1, size(self%model%bodies)
+      call self%model%bodies(i)%body%points%use_huge_pages()
+    end do
     call self%driver%run(self%model, self%solver, self%serializer, monitor, error, &
                          self%checkpoints)
     call self%serializer%finish(self%model)

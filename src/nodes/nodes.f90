@@ -3,6 +3,7 @@ module mpm_nodes
   use mpm_configurable, only: configurable_t
   use mpm_errors, only: error_t
   use mpm_field_writer, only: field_writer_t
+  use mpm_huge_pages, only: use_huge_pages
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
   use mpm_memory, only: memory_left
@@ -123,6 +124,11 @@ contains
       if (present(bytes_missing)) bytes_missing = bytes
       return
     end if
+    call use_huge_pages(self%mass)
+    call use_huge_pages(self%momentum)
+    call use_huge_pages(self%force)
+    call use_huge_pages(self%velocity)
+    call use_huge_pages(self%increment)
     self%mass = 0.0_wp
     self%momentum = 0.0_wp
     self%force = 0.0_wp

@@ -4,6 +4,7 @@ module mpm_points
   use mpm_errors, only: err_input, error_t, raise
   use mpm_field_writer, only: field_writer_t
   use mpm_grid, only: grid_t
+  use mpm_huge_pages, only: use_huge_pages
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
   use mpm_memory, only: size_text, way_to_more
@@ -159,6 +160,8 @@ module mpm_points
     procedure :: claim => points_claim
     !> Bytes that the points hold.
     procedure :: memory => points_memory
+    !> Put the arrays of a step into huge pages.
+    procedure :: use_huge_pages => points_use_huge_pages
     !> Look for points of this class in a checkpoint.
     procedure :: keep => points_keep
     !> Take them in place of those of a file.
@@ -276,10 +279,34 @@ contains
     if (.not. allocated(self%extent)) allocate (self%extent(n), source=0.0_wp)
     if (.not. allocated(self%x)) allocate (self%x(kin%dim, n), source=0.0_wp)
     if (.not. allocated(self%velocity)) allocate (self%velocity(kin%nvel, n), source=0.0_wp)
-    allocate (self%displacement(kin%nvel, n), self%stress(kin%nstress, n), source=0.0_wp)
+    allocate (self%displacement(kin%nvel, n), self%stress(kin%nstress, n))
+    call use_huge_pages(self%displacement)
+    call use_huge_pages(self%stress)
+    self%displacement = 0.0_wp
+    self%stress = 0.0_wp
     allocate (self%key(n), source=outside)
     allocate (self%order(n), self%history(0, n))
   end subroutine points_allocate
+
+  !> Put the arrays of a step into huge pages.
+  subroutine points_use_huge_pages(self)
+    !> The points.
+    class(points_t), intent(in) :: self
+
+    call use_huge_pages(self%mass)
+    call use_huge_pages(self%volume)
+    call use_huge_pages(self%extent)
+    call use_huge_pages(self%x)
+    call use_huge_pages(self%displacement)
+    call use_huge_pages(self%velocity)
+    call use_huge_pages(self%stress)
+    call use_huge_pages(self%history)
+    call use_huge_pages(self%gradient)
+    call use_huge_pages(self%shear_rate)
+    call use_huge_pages(self%affine)
+    call use_huge_pages(self%key)
+    call use_huge_pages(self%order)
+  end subroutine points_use_huge_pages
 
   !> Take a basis and find the keys of all points; `refresh_order` sorts them.
   subroutine points_locate(self, stencil)
