@@ -8,7 +8,8 @@ module mpm_momentum
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t
   use mpm_seam, only: fold_ghosts
-  use mpm_stencil, only: block_size, decode_keys, period_shift, stencil_t, stencil_weights
+  use mpm_stencil, only: block_size, decode_keys, hat_coordinates, period_shift, stencil_t, &
+                         weights_of_points
   use mpm_window, only: window_t
   implicit none
   private
@@ -158,8 +159,6 @@ contains
 
 #define DIM 1
 #define NVEL 1
-#define LINES 1
-#define LAYERS 1
 #define NAME momentum_1d_2
 #define WIDTH 2
 #include "momentum_template.inc"
@@ -182,12 +181,8 @@ contains
 #undef WIDTH
 #undef DIM
 #undef NVEL
-#undef LINES
-#undef LAYERS
 #define DIM 2
 #define NVEL 2
-#define LINES WIDTH
-#define LAYERS 1
 #define NAME momentum_plane_2
 #define WIDTH 2
 #include "momentum_template.inc"
@@ -210,12 +205,8 @@ contains
 #undef WIDTH
 #undef DIM
 #undef NVEL
-#undef LINES
-#undef LAYERS
 #define DIM 3
 #define NVEL 3
-#define LINES WIDTH
-#define LAYERS WIDTH
 #define NAME momentum_3d_2
 #define WIDTH 2
 #include "momentum_template.inc"
@@ -238,12 +229,8 @@ contains
 #undef WIDTH
 #undef DIM
 #undef NVEL
-#undef LINES
-#undef LAYERS
 #define DIM 2
 #define NVEL 3
-#define LINES WIDTH
-#define LAYERS 1
 #define NAME momentum_swirl_2
 #define WIDTH 2
 #include "momentum_template.inc"
@@ -266,7 +253,5 @@ contains
 #undef WIDTH
 #undef DIM
 #undef NVEL
-#undef LINES
-#undef LAYERS
 
 end module mpm_momentum

@@ -310,45 +310,19 @@ contains
     real(wp), intent(inout) :: w(*)
     !> Derivatives. [1/m] (width, dim, n)
     real(wp), intent(inout) :: dw(*)
-
-    if (stencil%averaged .and. stencil%general()) then
-      call averaged_weights(stencil, n, x, extent, base, w, dw)
-    else
-      call plain_weights(stencil, n, x, extent, base, w, dw)
-    end if
-    if (stencil%fitted .and. stencil%width > 2) then
-      call fitted_slopes(stencil, stencil%width, stencil%dim, n, x, base, w, dw)
-    end if
-  end subroutine stencil_weights
-
-  !> Values and derivatives of all but the averages of smooth or periodic functions.
-  pure subroutine plain_weights(stencil, n, x, extent, base, w, dw)
-    !> Basis.
-    type(stencil_t), intent(in) :: stencil
-    !> Number of points.
-    integer, intent(in) :: n
-    !> Positions. [m] (dim, n)
-    real(wp), intent(in) :: x(*)
-    !> Half sides of the points' boxes. [m] (n)
-    real(wp), intent(in) :: extent(n)
-    !> First nodes. (3, n)
-    integer, intent(in) :: base(3, n)
-    !> Values. (width, dim, n)
-    real(wp), intent(inout) :: w(*)
-    !> Derivatives. [1/m] (width, dim, n)
-    real(wp), intent(inout) :: dw(*)
-
     real(wp) :: value(block_size*stencil%width*stencil%dim)
     real(wp) :: slope(block_size*stencil%width*stencil%dim)
 
     if (stencil%width == 2) then
       call hat_weights(stencil, stencil%dim, n, x, w, dw)
+    else if (stencil%averaged .and. stencil%general() .and. .not. stencil%fitted) then
+      call averaged_weights(stencil, n, x, extent, base, w, dw)
     else
-      call many_weights(stencil, n, x, extent, base, value, slope)
+      call weights_of_points(stencil, n, x, extent, base, value, slope)
       call turn(stencil%width*stencil%dim, n, value, w)
       call turn(stencil%width*stencil%dim, n, slope, dw)
     end if
-  end subroutine plain_weights
+  end subroutine stencil_weights
 
   !> Values and derivatives of hats, from the coordinates that P2G and G2P use: mass and momentum
   !! of a node must be sums with the same functions.
@@ -450,14 +424,17 @@ contains
     real(wp) :: value(stencil%width*stencil%dim, n), slope(stencil%width*stencil%dim, n)
     integer :: p
 
-    if (stencil%fitted .or. (stencil%averaged .and. stencil%general())) then
-      call stencil_weights(stencil, n, x, extent, base, value, slope)
+    if (stencil%averaged .and. stencil%general()) then
+      call averaged_weights(stencil, n, x, extent, base, value, slope)
       do p = 1, n
         w(p, :) = value(:, p)
         dw(p, :) = slope(:, p)
       end do
     else
       call many_weights(stencil, n, x, extent, base, w, dw)
+    end if
+    if (stencil%fitted) then
+      call fitted_slopes(stencil, stencil%width, stencil%dim, n, x, base, w, dw)
     end if
   end subroutine weights_of_points
 
@@ -503,22 +480,37 @@ contains
     real(wp), intent(in) :: x(dim, n)
     !> First nodes. (3, n)
     integer, intent(in) :: base(3, n)
-    !> Values. (width, dim, n)
-    real(wp), intent(in) :: w(width, dim, n)
-    !> Derivatives, then slopes of the fit. [1/m] (width, dim, n)
-    real(wp), intent(inout) :: dw(width, dim, n)
+    !> Values. (block_size, width, dim)
+    real(wp), intent(in) :: w(block_size, width, dim)
+    !> Derivatives, then slopes of the fit. [1/m] (block_size, width, dim)
+    real(wp), intent(inout) :: dw(block_size, width, dim)
     real(wp), parameter :: least = 1.0e-3_wp
-    real(wp) :: r(width), s, spread
+    real(wp) :: s(block_size), mean(block_size), spread(block_size), factor
     integer :: p, d, j
 
-    do p = 1, n
-      do d = 1, dim
-        s = x(d, p) + period_shift(stencil, d, x(d, p), base(d, p))
-        s = (s - stencil%lower(d))/stencil%h(d)
-        r = [(real(base(d, p) + j - 1, wp), j=1, width)] - s
-        r = r - sum(w(:, d, p)*r)
-        spread = sum(w(:, d, p)*r**2)
-        if (spread > least) dw(:, d, p) = w(:, d, p)*r/(spread*stencil%h(d))
+    do d = 1, dim
+      do p = 1, n
+        s(p) = x(d, p) + period_shift(stencil, d, x(d, p), base(d, p))
+        s(p) = (s(p) - stencil%lower(d))/stencil%h(d) - real(base(d, p) - 1, wp)
+      end do
+      mean(:n) = 0.0_wp
+      do j = 1, width
+        do p = 1, n
+          mean(p) = mean(p) + w(p, j, d)*(real(j, wp) - s(p))
+        end do
+      end do
+      s(:n) = s(:n) + mean(:n)
+      spread(:n) = 0.0_wp
+      do j = 1, width
+        do p = 1, n
+          spread(p) = spread(p) + w(p, j, d)*(real(j, wp) - s(p))**2
+        end do
+      end do
+      do j = 1, width
+        do p = 1, n
+          factor = 1.0_wp/(max(least, spread(p))*stencil%h(d))
+          if (spread(p) > least) dw(p, j, d) = w(p, j, d)*(real(j, wp) - s(p))*factor
+        end do
       end do
     end do
   end subroutine fitted_slopes
