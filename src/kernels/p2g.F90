@@ -13,7 +13,7 @@ module mpm_p2g
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
   use mpm_stencil, only: axis_fraction, block_size, decode_keys, hat_coordinates, stencil_t, &
-                         stencil_weights, weights_of_points
+                         weights_of_points
   use mpm_window, only: window_t
   implicit none
   private
