@@ -12,7 +12,8 @@ module mpm_huge_pages
 
   !> Size of a huge page. [B]
   integer(c_intptr_t), parameter :: page = 2097152
-  !> Advice to Linux: MADV_HUGEPAGE for pages that will be written, MADV_COLLAPSE for those that are.
+  !> Advice to Linux: MADV_HUGEPAGE for pages that will be written, MADV_COLLAPSE for those that
+  !> are.
   integer(c_int), parameter :: advice(2) = [14, 25]
 
   interface

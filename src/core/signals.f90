@@ -13,8 +13,8 @@ module mpm_signals
   !> Numbers of signals on Linux.
   integer(c_int), parameter :: sigint = 2, sigusr1 = 10, sigterm = 15, sigxfsz = 25
 
-  !> Signals that come within this part of a second are one: `timeout` sends its signal to the program
-  !> and to its group, and batch systems to each process of a job.
+  !> Signals that come within this part of a second are one: `timeout` sends its signal to the
+  !> program and to its group, and batch systems to each process of a job.
   real, parameter :: one_request = 0.25
 
   !> The first signal that asked the program to stop, or 0.
