@@ -5,7 +5,7 @@
 module mpm_signals
   use, intrinsic :: iso_c_binding, only: c_funloc, c_funptr, c_int, c_null_funptr
   use, intrinsic :: iso_c_binding, only: c_intptr_t
-  use mpm_kinds, only: lp
+  use mpm_kinds, only: lp, wp
   implicit none
   private
   public :: ignore_file_limit, save_was_asked, signal_name, stop_signal, watch_signals
@@ -15,7 +15,7 @@ module mpm_signals
 
   !> Signals that come within this part of a second are one: `timeout` sends its signal to the
   !> program and to its group, and batch systems to each process of a job.
-  real, parameter :: one_request = 0.25
+  real(wp), parameter :: one_request = 0.25_wp
 
   !> The first signal that asked the program to stop, or 0.
   integer(c_int), volatile :: stop_number = 0
@@ -110,7 +110,7 @@ contains
     if (stop_number == 0) then
       stop_clock = now
       stop_number = number
-    else if (real(now - stop_clock) > one_request*real(rate)) then
+    else if (real(now - stop_clock, wp) > one_request*real(rate, wp)) then
       ignored = c_signal(number, c_null_funptr)
       status = c_raise(number)
     end if
