@@ -10,8 +10,10 @@
 !! f_t += sum_p S_ip A_p T_rt with the meridian area A_p = V_p/r_p (Sulsky, Chen and Schreyer,
 !! CMAME 118, 1994, for the Cartesian terms).
 module mpm_p2g
+  use, intrinsic :: iso_fortran_env, only: lp => int64
   use mpm_kinds, only: wp
   use mpm_kinematics, only: kinematics_t
+  use mpm_prefetch, only: prefetch_batch, prefetch_rows
   use mpm_stencil, only: axis_fraction, block_size, decode_keys, hat_coordinates, stencil_t, &
                          weights_of_points
   use mpm_window, only: window_t

@@ -2,6 +2,7 @@
 !!
 !! Points with domains have lists of nodes (`mpm_node_list`), all others stencils (`mpm_stencil`).
 module mpm_point_maps
+  use, intrinsic :: iso_fortran_env, only: lp => int64
   use mpm_g2p, only: g2p
   use mpm_kinds, only: wp
   use mpm_kinematics, only: type_axisymmetric
@@ -10,6 +11,7 @@ module mpm_point_maps
   use mpm_momentum, only: add_momentum
   use mpm_nodal_volume, only: nodal_volume
   use mpm_points, only: points_t
+  use mpm_prefetch, only: prefetch_batch, prefetch_rows
   use mpm_scatter, only: scatter
   use mpm_stencil, only: axis_fraction, basis_hat, natural_width, stencil_t
   use mpm_threads, only: useful_threads
@@ -145,15 +147,54 @@ contains
     real(wp), intent(inout) :: increment(points%kin%nvel*(b - a + 1))
     !> Velocity gradient, components in the order of `kinematics_t`. [1/s] (ngrad, b - a + 1)
     real(wp), intent(inout) :: gradient(points%kin%ngrad*(b - a + 1))
+    integer(lp) :: seen
+    integer :: dim, batch, i, j, v, g
+    logical :: ahead
 
     if (allocated(points%domains)) then
       call points%domains%list%gather(points%kin, a, b, node_velocity, node_increment, velocity, &
                                       increment, gradient)
     else
-      call g2p(points%kin, stencil, window, b - a + 1, points%key(a:b), points%x(:, a:b), &
-               points%extent(a:b), node_velocity, node_increment, velocity, increment, gradient)
+      dim = points%kin%dim
+      ! In 3D more nodes are arithmetic that the memory hardly delays.
+      ahead = dim == 2 .or. (dim == 3 .and. stencil%width == 2)
+      batch = b - a + 1
+      if (ahead) batch = prefetch_batch(dim)
+      seen = 0
+      do i = a, b, batch
+        j = min(i + batch - 1, b)
+        if (ahead) call prefetch_points(points, i, j, seen)
+        v = points%kin%nvel*(i - a) + 1
+        g = points%kin%ngrad*(i - a) + 1
+        call g2p(points%kin, stencil, window, j - i + 1, points%key(i:j), points%x(:, i:j), &
+                 points%extent(i:j), node_velocity, node_increment, velocity(v:), increment(v:), &
+                 gradient(g:))
+      end do
     end if
   end subroutine interpolate_points
+
+  !> Ask for the fields that a step changes of the points after some.
+  pure subroutine prefetch_points(points, a, b, seen)
+    !> The points.
+    class(points_t), intent(in) :: points
+    !> First slot.
+    integer, intent(in) :: a
+    !> Last slot.
+    integer, intent(in) :: b
+    !> See `prefetch_rows`.
+    integer(lp), intent(inout) :: seen
+    integer :: n
+
+    n = b - a + 1
+    call prefetch_rows(points%kin%dim, n, points%x(1, a), seen)
+    call prefetch_rows(points%kin%nvel, n, points%velocity(1, a), seen)
+    call prefetch_rows(points%kin%nvel, n, points%displacement(1, a), seen)
+    call prefetch_rows(1, n, points%volume(a), seen)
+    call prefetch_rows(points%kin%nstress, n, points%stress(1, a), seen)
+    if (size(points%history, 1) > 0) then
+      call prefetch_rows(size(points%history, 1), n, points%history(1, a), seen)
+    end if
+  end subroutine prefetch_points
 
   !> N_i = sum_p m_p grad N_i(x_p) at the nodes of a part of the grid; in TYPE 4 with m_p/r_p.
   subroutine map_mass_gradient(points, part, gradient)
