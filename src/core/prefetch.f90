@@ -30,7 +30,7 @@ contains
     !> Rows; none when not above 0.
     integer, intent(in) :: n
     !> Their numbers. (width n)
-    real(wp), intent(in) :: rows(*)
+    real(wp), intent(in) :: rows(width*n)
     !> Takes up bits of the numbers, so that the compiler has to read them.
     integer(lp), intent(inout) :: seen
     integer :: i
