@@ -17,6 +17,9 @@ from bench.scenes import Case
 SHORT = 5
 #: What one point and step costs, about; decides the number of steps. [s]
 GUESS = 60e-9
+#: Least length of a run for each point, in s: the time of the set-up, which grows with the points,
+#: is never the same twice.
+LEAST = 6e-6
 #: Seconds between two looks at a process that runs.
 POLL = 0.002
 #: Frames per second of simulated time with which the share of the frames is stated. [1/s]
@@ -117,6 +120,7 @@ def measure(
     minute to minute.
     """
     per_step = GUESS * case.points
+    seconds = max(seconds, LEAST * case.points)
     steps = SHORT + max(10, min(round(seconds / per_step), int(case.scene.duration / case.dt)))
     samples, kernels, set_up, memory = [], [], [], 0
     for _ in range(repeat):
