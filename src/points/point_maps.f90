@@ -158,7 +158,7 @@ contains
       dim = points%kin%dim
       ! In 3D more nodes are arithmetic that the memory hardly delays.
       ahead = dim == 2 .or. (dim == 3 .and. stencil%width == 2)
-      batch = b - a + 1
+      batch = max(b - a + 1, 1)
       if (ahead) batch = prefetch_batch(dim)
       seen = 0
       do i = a, b, batch
