@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import statistics
 import subprocess
 import tempfile
@@ -156,7 +157,11 @@ def measure(
 
 
 def timed_frames(program: str, case: Case, threads: int, steps: int, *, binary: bool) -> str:
-    """Run with some frames, of text or binary; return what the program tells."""
+    """Run with some frames, of text or binary; return what the program tells.
+
+    There are none before: to replace a file costs more than to write a new one.
+    """
+    shutil.rmtree(case.folder / "frames", ignore_errors=True)
     wanted = min(FRAMES, max(1, FRAME_POINTS // case.points))
     nodes = 0 if case.scene.cells else 1
     settings = (

@@ -10,7 +10,7 @@ module mpm_number_text
   use mpm_number_parser, only: exact_power, multiply_exactly
   implicit none
   private
-  public :: append_integer, append_real, default_digits, max_number_length
+  public :: append_integer, append_real, default_digits, max_number_length, pairs
 
   !> Most characters that one number takes.
   integer, parameter :: max_number_length = 26

@@ -6,6 +6,7 @@ module mpm_text_writer
   use mpm_errors, only: err_io, error_t, raise
   use mpm_files, only: delete_file, process_id, reason_against, rename_file
   use mpm_kinds, only: lp, wp
+  use mpm_number_lines, only: append_integer_lines, append_real_lines, max_entry_length
   use mpm_number_text, only: append_integer, append_real, default_digits, max_number_length
   use mpm_strings, only: to_text
   implicit none
@@ -14,6 +15,8 @@ module mpm_text_writer
 
   !> Bytes gathered for one write to the file.
   integer, parameter :: buffer_size = 1024*1024
+  !> Numbers that are put as text at a time, about.
+  integer, parameter :: numbers_at_once = 192
   !> Numbers that are put as bytes at a time.
   integer, parameter :: byte_block = 512
   !> Whether this machine stores the lowest byte of a number first.
@@ -56,7 +59,7 @@ module mpm_text_writer
     procedure :: put_reals
     !> Write reals as 8 bytes each.
     procedure :: put_real_bytes
-    !> Write integers on a line of their own.
+    !> Write many integers, some on each line.
     procedure :: put_integers
     !> Write integers as 4 bytes each.
     procedure :: put_integer_bytes
@@ -144,27 +147,30 @@ contains
   end subroutine put_real
 
   !> Write many reals, blanks between them and some on each line; the last line is ended too.
-  subroutine put_reals(self, numbers, per_line)
+  subroutine put_reals(self, numbers, per_line, per_group)
     !> The writer.
     class(text_writer_t), intent(inout) :: self
     !> The numbers.
     real(wp), intent(in) :: numbers(:)
-    !> Numbers on a line, at least 1.
+    !> Numbers on a line, 1 to 64.
     integer, intent(in) :: per_line
-    integer :: i, n_on_line
+    !> Numbers behind which there is an empty line, 1 to 64 and a multiple of those of a line; none
+    !> when left out.
+    integer, intent(in), optional :: per_group
+    integer :: group, first, m, n
 
-    n_on_line = 0
-    do i = 1, size(numbers)
-      call self%make_room(max_number_length + 1)
-      call append_real(self%buffer, self%length, numbers(i), self%digits)
-      n_on_line = n_on_line + 1
-      self%length = self%length + 1
-      if (n_on_line == per_line .or. i == size(numbers)) then
-        self%buffer(self%length:self%length) = new_line('a')
-        n_on_line = 0
-      else
-        self%buffer(self%length:self%length) = ' '
-      end if
+    group = huge(group)
+    m = per_line
+    if (present(per_group)) then
+      group = per_group
+      m = per_group
+    end if
+    m = m*(numbers_at_once/m)
+    do first = 1, size(numbers), m
+      n = min(m, size(numbers) - first + 1)
+      call self%make_room(max_entry_length*n)
+      call append_real_lines(self%buffer, self%length, numbers(first:first + n - 1), self%digits, &
+                             per_line, group)
     end do
   end subroutine put_reals
 
@@ -194,21 +200,22 @@ contains
     end do
   end subroutine put_real_bytes
 
-  !> Write integers on a line of their own, blanks between them.
-  subroutine put_integers(self, numbers)
+  !> Write integers, blanks between them and some on each line; the last line is ended too.
+  subroutine put_integers(self, numbers, per_line)
     !> The writer.
     class(text_writer_t), intent(inout) :: self
-    !> The numbers, at least one.
+    !> The numbers.
     integer, intent(in) :: numbers(:)
-    integer :: i
+    !> Numbers on a line, 1 to 64.
+    integer, intent(in) :: per_line
+    integer :: first, m, n
 
-    do i = 1, size(numbers)
-      call self%make_room(max_number_length + 1)
-      call append_integer(self%buffer, self%length, numbers(i))
-      self%length = self%length + 1
-      self%buffer(self%length:self%length) = ' '
+    m = per_line*(numbers_at_once/per_line)
+    do first = 1, size(numbers), m
+      n = min(m, size(numbers) - first + 1)
+      call self%make_room(max_entry_length*n)
+      call append_integer_lines(self%buffer, self%length, numbers(first:first + n - 1), per_line)
     end do
-    self%buffer(self%length:self%length) = new_line('a')
   end subroutine put_integers
 
   !> Write integers as 4 bytes each, the highest first.

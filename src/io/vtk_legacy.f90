@@ -10,12 +10,12 @@ module mpm_vtk_legacy
   use mpm_text_writer, only: text_writer_t
   implicit none
   private
-  public :: vtk_legacy_t, vtk_vertex
+  public :: cells_at_once, vtk_legacy_t, vtk_vertex
 
   !> VTK cell type of a single point.
   integer, parameter :: vtk_vertex = 1
-  !> Vertices whose numbers are put as bytes at a time.
-  integer, parameter :: vertices_at_once = 256
+  !> Cells that are best put at a time.
+  integer, parameter :: cells_at_once = 256
   !> Readers take 255 characters of a title or name, and then there may be a number behind it.
   integer, parameter :: max_name_length = 240
 
@@ -39,8 +39,8 @@ module mpm_vtk_legacy
     procedure :: put_vertices
     !> Start the block of cells.
     procedure :: start_cells
-    !> Write a cell.
-    procedure :: put_cell
+    !> Write some cells.
+    procedure :: put_cells
     !> Write the types of all cells.
     procedure :: put_cell_types
     !> Start the fields.
@@ -132,19 +132,13 @@ contains
     class(vtk_legacy_t), intent(inout) :: self
     !> Number of points.
     integer, intent(in) :: n
-    integer :: i, first, last
+    integer :: first, last, i
 
     call self%start_cells(n, 1)
-    if (self%binary) then
-      do first = 0, n - 1, vertices_at_once
-        last = min(n - 1, first + vertices_at_once - 1)
-        call self%text%put_integer_bytes([(1, i, i=first, last)])
-      end do
-    else
-      do i = 0, n - 1
-        call self%text%put_integers([1, i])
-      end do
-    end if
+    do first = 0, n - 1, cells_at_once
+      last = min(n, first + cells_at_once) - 1
+      call self%put_cells(reshape([(i, i=first, last)], [1, last - first + 1]))
+    end do
     call self%put_cell_types(n, vtk_vertex)
   end subroutine put_vertices
 
@@ -160,19 +154,27 @@ contains
     call self%put_header('CELLS '//to_text(n)//' '//to_text(int(n, lp)*(nodes_per_cell + 1)))
   end subroutine start_cells
 
-  !> Write a cell.
-  subroutine put_cell(self, nodes)
+  !> Write some cells.
+  subroutine put_cells(self, nodes)
     !> The file.
     class(vtk_legacy_t), intent(inout) :: self
-    !> Its nodes, from 0, in the order of the VTK cell type.
-    integer, intent(in) :: nodes(:)
+    !> Their nodes, from 0, in the order of the VTK cell type. (nodes of a cell, any)
+    integer, intent(in) :: nodes(:, :)
+    integer :: numbers((size(nodes, 1) + 1)*size(nodes, 2)), n, i, k
 
+    n = size(nodes, 1)
+    k = 0
+    do i = 1, size(nodes, 2)
+      numbers(k + 1) = n
+      numbers(k + 2:k + 1 + n) = nodes(:, i)
+      k = k + 1 + n
+    end do
     if (self%binary) then
-      call self%text%put_integer_bytes([size(nodes), nodes])
+      call self%text%put_integer_bytes(numbers)
     else
-      call self%text%put_integers([size(nodes), nodes])
+      call self%text%put_integers(numbers, n + 1)
     end if
-  end subroutine put_cell
+  end subroutine put_cells
 
   !> Write the types of all cells, which are the same.
   subroutine put_cell_types(self, n, cell_type)
@@ -182,19 +184,17 @@ contains
     integer, intent(in) :: n
     !> VTK cell type.
     integer, intent(in) :: cell_type
-    character(:), allocatable :: line
-    integer :: i
+    integer :: some(min(n, cells_at_once)), m, i
 
     call self%put_header('CELL_TYPES '//to_text(n))
-    if (self%binary) then
-      do i = 1, n, vertices_at_once
-        call self%text%put_integer_bytes(spread(cell_type, 1, min(n + 1 - i, vertices_at_once)))
-      end do
-      return
-    end if
-    line = to_text(cell_type)//new_line('a')
-    do i = 1, n
-      call self%text%put_text(line)
+    some = cell_type
+    do i = 1, n, cells_at_once
+      m = min(n + 1 - i, cells_at_once)
+      if (self%binary) then
+        call self%text%put_integer_bytes(some(:m))
+      else
+        call self%text%put_integers(some(:m), 1)
+      end if
     end do
   end subroutine put_cell_types
 
@@ -269,20 +269,12 @@ contains
     class(vtk_legacy_t), intent(inout) :: self
     !> Rows one behind the other: xx xy xz yx ... (9, any)
     real(wp), contiguous, intent(in) :: tensors(:, :)
-    integer :: i
 
-    do i = 1, size(tensors, 2)
-      if (self%binary) then
-        call self%text%put_real_bytes(tensors(:, i))
-        cycle
-      end if
-      call self%text%put_reals(tensors(:, i), 3)
-      call self%text%put_line()
-    end do
+    call put_triples(self%text, self%binary, tensors, size(tensors), per_group=9)
   end subroutine put_tensors
 
   !> Write numbers, three on each line.
-  subroutine put_triples(text, binary, numbers, n)
+  subroutine put_triples(text, binary, numbers, n, per_group)
     !> The text of the file.
     type(text_writer_t), intent(inout) :: text
     !> Numbers as bytes.
@@ -291,11 +283,13 @@ contains
     integer, intent(in) :: n
     !> The numbers.
     real(wp), intent(in) :: numbers(n)
+    !> Numbers behind which there is an empty line in text; none when left out.
+    integer, intent(in), optional :: per_group
 
     if (binary) then
       call text%put_real_bytes(numbers)
     else
-      call text%put_reals(numbers, 3)
+      call text%put_reals(numbers, 3, per_group)
     end if
   end subroutine put_triples
 

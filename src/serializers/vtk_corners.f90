@@ -46,7 +46,7 @@ contains
     end do
     call file%start_cells(points%n, corners)
     do p = 1, points%n
-      call file%put_cell([(corners*(p - 1) + c, c=0, corners - 1)])
+      call file%put_cells(reshape([(corners*(p - 1) + c, c=0, corners - 1)], [corners, 1]))
     end do
     call file%put_cell_types(points%n, cell_types(points%kin%dim))
     call file%start_fields(points%n*corners)

@@ -6,6 +6,7 @@ module mpm_vtk_node_fields
   use mpm_kinds, only: wp
   use mpm_strings, only: to_text
   use mpm_vtk_fields, only: block_size, vtk_fields_t
+  use mpm_vtk_legacy, only: cells_at_once
   use mpm_window, only: window_t
   implicit none
   private
@@ -86,14 +87,17 @@ contains
     class(vtk_node_fields_t), intent(inout) :: self
     !> The grid.
     class(grid_t), intent(in) :: grid
-    integer :: nodes(8), n_nodes, n_cells, cell
+    integer :: nodes(8, cells_at_once), n_nodes, n_cells, first, n, i
 
     n_cells = grid%cell_count()
-    call grid%cell_nodes(0, nodes, n_nodes)
+    call grid%cell_nodes(0, nodes(:, 1), n_nodes)
     call self%file%start_cells(n_cells, n_nodes)
-    do cell = 0, n_cells - 1
-      call grid%cell_nodes(cell, nodes, n_nodes)
-      call self%file%put_cell(nodes(:n_nodes))
+    do first = 0, n_cells - 1, cells_at_once
+      n = min(cells_at_once, n_cells - first)
+      do i = 1, n
+        call grid%cell_nodes(first + i - 1, nodes(:, i), n_nodes)
+      end do
+      call self%file%put_cells(nodes(:n_nodes, :n))
     end do
     call self%file%put_cell_types(n_cells, grid%vtk_cell_type())
   end subroutine put_cells
