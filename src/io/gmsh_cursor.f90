@@ -105,7 +105,8 @@ contains
     !> True for blank, tab, carriage return and the end of a line.
     logical :: is_blank
 
-    is_blank = c == ' ' .or. c == new_line('a') .or. c == achar(9) .or. c == achar(13)
+    ! By their codes: the compiler compares with a blank by a call that trims.
+    is_blank = any(iachar(c) == [iachar(' '), 10, 9, 13])
   end function is_blank
 
   !> The rest of the line, from the next word on, without blanks at its end.

@@ -414,7 +414,8 @@ contains
     !> True for blank, tab and carriage return.
     logical :: is_blank
 
-    is_blank = c == blanks(1:1) .or. c == blanks(2:2) .or. c == blanks(3:3)
+    ! By their codes: the compiler compares with a blank by a call that trims.
+    is_blank = iachar(c) == iachar(' ') .or. iachar(c) == 9 .or. iachar(c) == 13
   end function is_blank
 
 end module mpm_points_table
