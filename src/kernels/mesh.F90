@@ -414,19 +414,27 @@ contains
     integer, intent(in) :: bucket(3)
     !> Whether it does.
     logical :: overlaps
-    real(wp) :: value(0:self%dim), centre(self%dim), half(self%dim), g(self%dim)
-    integer :: k
+    ! Of fixed size: others are allocated in each call.
+    real(wp) :: value(0:3), centre(3), half(3), size_of(0:3), g
+    integer :: d, k
 
-    half = 0.5_wp/self%per_length(:self%dim)
-    centre = self%lower(:self%dim) + real(2*bucket(:self%dim) + 1, wp)*half
-    call self%values(cell, centre, value)
-    overlaps = .true.
-    do k = 0, self%dim
-      if (k == 0) g = sum(self%affine(:, 1:, cell), dim=2)
-      if (k > 0) g = self%affine(:, k, cell)
-      ! Much more than a rounding: a cell too many does no harm.
-      overlaps = overlaps .and. value(k) + sum(abs(g)*half) >= -sure - self%slack
+    do d = 1, self%dim
+      half(d) = 0.5_wp/self%per_length(d)
+      centre(d) = self%lower(d) + real(2*bucket(d) + 1, wp)*half(d)
     end do
+    call self%values(cell, centre, value)
+    ! How much each function changes from the centre to a corner.
+    size_of = 0.0_wp
+    do d = 1, self%dim
+      g = 0.0_wp
+      do k = 1, self%dim
+        g = g + self%affine(d, k, cell)
+        size_of(k) = size_of(k) + abs(self%affine(d, k, cell))*half(d)
+      end do
+      size_of(0) = size_of(0) + abs(g)*half(d)
+    end do
+    ! Much more than a rounding: a cell too many does no harm.
+    overlaps = all(value(:self%dim) + size_of(:self%dim) >= -sure - self%slack)
   end function overlaps
 
   !> The cell of a position.
