@@ -1,15 +1,11 @@
 !> Tensors that a motion carries along: B <- f B transpose(f) with f = exp(dt L), for many points.
 module mpm_push_forward
-  use mpm_deformation, only: exponential, largest_step, multiply, unpack_gradients
+  use mpm_deformation, only: exponential, largest_step, small_exponentials, unpack_gradients
   use mpm_kinds, only: wp
   use mpm_kinematics, only: expand_gradient, kinematics_t
   implicit none
   private
   public :: push_forward
-
-  !> Largest sum of the components of dt |L| for the series: the first term that is left out is less
-  !! than 2**-54 of the first one.
-  real(wp), parameter :: reach = 1.0_wp/128.0_wp
 
 contains
 
@@ -33,28 +29,23 @@ contains
     real(wp), intent(out) :: trace(n)
     !> Whether the step is one of a body; where it is not, B stays. (n)
     logical, intent(out) :: good(n)
-    real(wp) :: l(n, 3, 3), e(n, 3, 3), total(n), one(3, 3), before(6)
-    integer :: c, k, p
+    real(wp) :: l(n, 3, 3), e(n, 3, 3), one(3, 3), before(6)
+    logical :: small(n)
+    integer :: p
 
     call unpack_gradients(kin, n, dt, gradient, l)
     trace = l(:, 1, 1) + l(:, 2, 2) + l(:, 3, 3)
-    total = 0.0_wp
-    do c = 1, 3
-      do k = 1, 3
-        total = total + abs(l(:, k, c))
-      end do
-    end do
+    call small_exponentials(n, l, e, small)
+    call transform(n, e, rows, b)
     good = .true.
+    if (all(small)) return
     do p = 1, n
-      if (total(p) <= reach) cycle
-      l(p, :, :) = 0.0_wp
+      if (small(p)) cycle
       one = dt*expand_gradient(kin, gradient(:, p))
       good(p) = all(abs(one) <= largest_step)
       before = b(p, :)
       if (good(p)) b(p, :) = alone(one, before)
     end do
-    call series(n, l, e)
-    call transform(n, e, rows, b)
   end subroutine push_forward
 
   !> f B transpose(f) of one point.
@@ -72,27 +63,6 @@ contains
     t = matmul(f, matmul(t, transpose(f)))
     moved = [t(1, 1), t(2, 2), t(3, 3), t(1, 2), t(2, 3), t(3, 1)]
   end function alone
-
-  !> exp(l) - 1 = l + l**2/2 + l**3 (1/6 + l/24 + l**2/120 + l**3/720).
-  pure subroutine series(n, l, e)
-    !> Number of points.
-    integer, intent(in) :: n
-    !> Small tensors. (n, 3, 3)
-    real(wp), intent(in) :: l(n, 3, 3)
-    !> Exponentials less 1. (n, 3, 3)
-    real(wp), intent(out) :: e(n, 3, 3)
-    real(wp) :: square(n, 3, 3), cube(n, 3, 3), factor(n, 3, 3)
-    integer :: k
-
-    call multiply(n, l, l, square)
-    call multiply(n, l, square, cube)
-    factor = (1.0_wp/24.0_wp)*l + (1.0_wp/120.0_wp)*square + (1.0_wp/720.0_wp)*cube
-    do k = 1, 3
-      factor(:, k, k) = factor(:, k, k) + 1.0_wp/6.0_wp
-    end do
-    call multiply(n, cube, factor, e)
-    e = l + (0.5_wp*square + e)
-  end subroutine series
 
   !> (1 + e) B transpose(1 + e) = B + e B + B transpose(e) + e B transpose(e).
   pure subroutine transform(n, e, rows, b)
