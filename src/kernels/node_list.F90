@@ -12,8 +12,10 @@
 !! nodes far apart in their arrays belong to points far apart in theirs. Blocks that reach over more
 !! than half of all nodes (at seams of periodic grids) are added last, by one thread.
 module mpm_node_list
+  use, intrinsic :: iso_fortran_env, only: int64
   use mpm_kinds, only: lp, wp
   use mpm_kinematics, only: kinematics_t, type_1d, type_3d, type_axisymmetric, type_plane_strain
+  use mpm_prefetch, only: prefetch_batch, prefetch_rows
   implicit none
   private
   public :: list_block, node_list_t
@@ -22,6 +24,9 @@ module mpm_node_list
   integer, parameter :: list_block = 64
   !> Points in a slab, at least; fewer would cost more in scheduling than they give.
   integer, parameter :: slab_points = 512
+  !> Numbers in lists that no longer fit a cache, where asking for them ahead gains a tenth; below,
+  !! it costs as much.
+  real(wp), parameter :: far = 1.0e6_wp
   !> Stored stress component of row c, column k of the tensor.
   integer, parameter :: stress_index(3, 3) = reshape([1, 4, 6, 4, 2, 5, 6, 5, 3], [3, 3])
 
@@ -68,7 +73,10 @@ module mpm_node_list
     procedure :: gradients_at => node_list_gradients_at
     !> Bytes that the lists hold.
     procedure :: memory => node_list_memory
+    !> Whether it pays to ask for points ahead.
+    procedure :: is_far => node_list_is_far
     procedure, private :: add_range
+    procedure, private :: prefetch
     procedure, private :: scatter_block
   end type node_list_t
 
@@ -174,19 +182,22 @@ contains
     !> Last entry.
     integer, intent(in) :: last
     !> Nodes of all entries.
-    integer, intent(in) :: node(:)
+    integer, contiguous, intent(in) :: node(:)
     !> Lowest node; huge when there are none.
     integer, intent(out) :: lowest
     !> Highest node; -1 when there are none.
     integer, intent(out) :: highest
-    integer :: e
+    integer :: e, low, high
 
-    lowest = huge(1)
-    highest = -1
+    ! Of its own, so that they stay in registers.
+    low = huge(1)
+    high = -1
     do e = before + 1, last
-      lowest = min(lowest, node(e))
-      highest = max(highest, node(e))
+      low = min(low, node(e))
+      high = max(high, node(e))
     end do
+    lowest = low
+    highest = high
   end subroutine node_range
 
   !> Nodal mass, momentum and internal force of points, as of `mpm_p2g`.
@@ -268,29 +279,72 @@ contains
     real(wp), intent(inout) :: node_momentum(*)
     !> Nodal forces, added to. [N] (nvel, nn)
     real(wp), intent(inout) :: node_force(*)
-    integer :: a, b
+    integer(int64) :: seen
+    integer :: a, b, last, batch
+    logical :: is_far
 
-    a = (block - 1)*list_block + 1
-    b = min(self%n, block*list_block)
-    select case (kin%sim_type)
-    case (type_1d)
-      call scatter_1d(a, b, self%offset, self%node, self%basis, mass, volume, velocity, stress, &
-                      node_mass, node_momentum, node_force)
-    case (type_plane_strain)
-      call scatter_plane(a, b, self%offset, self%node, self%basis, mass, volume, velocity, stress, &
-                         node_mass, node_momentum, node_force)
-    case (type_3d)
-      call scatter_3d(a, b, self%offset, self%node, self%basis, mass, volume, velocity, stress, &
-                      node_mass, node_momentum, node_force)
-    case (type_axisymmetric)
-      call scatter_axisymmetric(a, b, self%offset, self%node, self%basis, mass, volume, velocity, &
-                                stress, node_mass, node_momentum, node_force, self%radius, &
-                                self%least_radius)
-    case default
-      call scatter_out_of_plane(a, b, self%offset, self%node, self%basis, mass, volume, velocity, &
-                                stress, node_mass, node_momentum, node_force)
-    end select
+    last = min(self%n, block*list_block)
+    is_far = self%is_far()
+    batch = list_block
+    if (is_far) batch = prefetch_batch(self%dim)
+    seen = 0
+    do a = (block - 1)*list_block + 1, last, batch
+      b = min(last, a + batch - 1)
+      if (is_far) then
+        call prefetch_rows(1, b - a + 1, mass(a), seen)
+        call prefetch_rows(1, b - a + 1, volume(a), seen)
+        call prefetch_rows(kin%nvel, b - a + 1, velocity((a - 1)*kin%nvel + 1), seen)
+        call prefetch_rows(kin%nstress, b - a + 1, stress((a - 1)*kin%nstress + 1), seen)
+        call self%prefetch(a, b, seen)
+      end if
+      select case (kin%sim_type)
+      case (type_1d)
+        call scatter_1d(a, b, self%offset, self%node, self%basis, mass, volume, velocity, stress, &
+                        node_mass, node_momentum, node_force)
+      case (type_plane_strain)
+        call scatter_plane(a, b, self%offset, self%node, self%basis, mass, volume, velocity, &
+                           stress, node_mass, node_momentum, node_force)
+      case (type_3d)
+        call scatter_3d(a, b, self%offset, self%node, self%basis, mass, volume, velocity, stress, &
+                        node_mass, node_momentum, node_force)
+      case (type_axisymmetric)
+        call scatter_axisymmetric(a, b, self%offset, self%node, self%basis, mass, volume, &
+                                  velocity, stress, node_mass, node_momentum, node_force, &
+                                  self%radius, self%least_radius)
+      case default
+        call scatter_out_of_plane(a, b, self%offset, self%node, self%basis, mass, volume, &
+                                  velocity, stress, node_mass, node_momentum, node_force)
+      end select
+    end do
   end subroutine scatter_block
+
+  !> Whether it pays to ask for points ahead: in more than one dimension, and where the lists are
+  !! too large for a cache.
+  pure function node_list_is_far(self) result(is_far)
+    !> The lists.
+    class(node_list_t), intent(in) :: self
+    !> Whether it does.
+    logical :: is_far
+
+    is_far = self%dim > 1 .and. (self%dim + 1)*real(self%offset(self%n), wp) > far
+  end function node_list_is_far
+
+  !> Ask for the functions of the points after some.
+  pure subroutine prefetch(self, a, b, seen)
+    !> The lists.
+    class(node_list_t), intent(in) :: self
+    !> First point.
+    integer, intent(in) :: a
+    !> Last point.
+    integer, intent(in) :: b
+    !> See `prefetch_rows`.
+    integer(int64), intent(inout) :: seen
+    integer :: first, n
+
+    first = self%offset(a - 1) + 1
+    n = self%offset(b) + 1 - first
+    if (n > 0) call prefetch_rows(self%dim + 1, n, self%basis(0, first), seen)
+  end subroutine prefetch
 
   !> Velocity, increment and velocity gradient at a block of points, as of `mpm_g2p`.
   pure subroutine node_list_gather(self, kin, a, b, node_velocity, node_increment, velocity, &
@@ -313,7 +367,10 @@ contains
     real(wp), intent(inout) :: increment(*)
     !> Velocity gradient, components in the order of `kinematics_t`. [1/s] (ngrad, b - a + 1)
     real(wp), intent(inout) :: gradient(*)
+    integer(int64) :: seen
 
+    seen = 0
+    if (self%is_far()) call self%prefetch(a, b, seen)
     select case (kin%sim_type)
     case (type_1d)
       call gather_1d(a, b, self%offset, self%node, self%basis, node_velocity, node_increment, &

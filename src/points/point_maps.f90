@@ -149,28 +149,33 @@ contains
     real(wp), intent(inout) :: gradient(points%kin%ngrad*(b - a + 1))
     integer(lp) :: seen
     integer :: dim, batch, i, j, v, g
-    logical :: ahead
+    logical :: listed, ahead
 
-    if (allocated(points%domains)) then
-      call points%domains%list%gather(points%kin, a, b, node_velocity, node_increment, velocity, &
-                                      increment, gradient)
+    listed = allocated(points%domains)
+    dim = points%kin%dim
+    if (listed) then
+      ahead = points%domains%list%is_far()
     else
-      dim = points%kin%dim
-      ! In 3D more nodes are arithmetic that the memory hardly delays.
+      ! The many nodes of wider stencils in 3D are arithmetic that the memory hardly delays.
       ahead = dim == 2 .or. (dim == 3 .and. stencil%width == 2)
-      batch = max(b - a + 1, 1)
-      if (ahead) batch = prefetch_batch(dim)
-      seen = 0
-      do i = a, b, batch
-        j = min(i + batch - 1, b)
-        if (ahead) call prefetch_points(points, i, j, seen)
-        v = points%kin%nvel*(i - a) + 1
-        g = points%kin%ngrad*(i - a) + 1
+    end if
+    batch = max(b - a + 1, 1)
+    if (ahead) batch = prefetch_batch(dim)
+    seen = 0
+    do i = a, b, batch
+      j = min(i + batch - 1, b)
+      if (ahead) call prefetch_points(points, i, j, seen)
+      v = points%kin%nvel*(i - a) + 1
+      g = points%kin%ngrad*(i - a) + 1
+      if (listed) then
+        call points%domains%list%gather(points%kin, i, j, node_velocity, node_increment, &
+                                        velocity(v:), increment(v:), gradient(g:))
+      else
         call g2p(points%kin, stencil, window, j - i + 1, points%key(i:j), points%x(:, i:j), &
                  points%extent(i:j), node_velocity, node_increment, velocity(v:), increment(v:), &
                  gradient(g:))
-      end do
-    end if
+      end if
+    end do
   end subroutine interpolate_points
 
   !> Ask for the fields that a step changes of the points after some.
