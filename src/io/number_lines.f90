@@ -1,10 +1,10 @@
 !> Many numbers to text, in lines: what `append_real` and `append_integer` make of each, many at a
 !! time.
 !!
-!! Eight to 15 digits of reals come from loops without branches, of which the compiler makes vector
-!! instructions: a number is scaled to an integer and cut in two parts of eight digits, each of which
-!! is spread to eight bytes in three steps. What is left to do one by one is to put the bytes in
-!! their place, in pieces of fixed length.
+!! Eight to 15 digits of reals come from loops without branches, which become vector instructions: a
+!! number is scaled to an integer and cut in two parts of eight digits, each of which is spread to
+!! eight bytes in three steps. What is left to do one by one is to put the bytes in their place, in
+!! pieces of fixed length.
 module mpm_number_lines
   use, intrinsic :: iso_fortran_env, only: int32, int64
   use mpm_kinds, only: wp
@@ -22,7 +22,7 @@ module mpm_number_lines
   integer, parameter :: least_digits = 8, most_digits = 15
   !> Places that the decimal point is moved to the right, at least and at most.
   integer, parameter :: least_places = -21, most_places = 44
-  !> Whether this machine stores the lowest byte of a number first, as text of eight digits needs it.
+  !> Whether this machine stores the lowest byte of a number first: eight digits are written so.
   logical, parameter :: low_byte_first = iachar(transfer(1_int32, 'a')) == 1
   !> The largest integer of eight digits.
   integer, parameter :: most_in_eight = 99999999
