@@ -45,7 +45,7 @@ contains
     integer, parameter :: used(4) = [of_y, of_ev, of_s, of_c]
     real(wp) :: from(width, n_state), known(width, n_level), next(width, n_state)
     real(wp) :: rest(width, n_level), ray(width, n_ray), start(n)
-    integer :: list(n), hit(n), keep(n), m, i, k, hits, left, piece
+    integer :: list(n), hit(n), keep(n), m, c, i, k, hits, left, piece
     logical :: found(n), lost(n)
 
     good = .true.
@@ -54,8 +54,8 @@ contains
       if (.not. level(i, of_y) > tolerance) cycle
       m = m + 1
       list(m) = i
-      start(i) = strain(level(i, of_j), level(i, of_ev))
     end do
+    start = strain2(level(:n, of_j), level(:n, of_ev))
     call take(n_state, n, m, list, state, from)
     call take(n_level, n, m, list, level, known)
     do piece = 1, patience
@@ -78,11 +78,21 @@ contains
       end do
       if (hits == n) then
         state(:n, :) = next(:n, :)
-        level(:n, used) = known(:n, used)
+        do c = 1, size(used)
+          level(:n, used(c)) = known(:n, used(c))
+        end do
         return
       end if
-      state(list(hit(:hits)), :) = next(hit(:hits), :)
-      level(list(hit(:hits)), used) = known(hit(:hits), used)
+      do c = 1, n_state
+        do k = 1, hits
+          state(list(hit(k)), c) = next(hit(k), c)
+        end do
+      end do
+      do c = 1, size(used)
+        do k = 1, hits
+          level(list(hit(k)), used(c)) = known(hit(k), used(c))
+        end do
+      end do
       call take(n_state, m, left, keep, next, from)
       if (left < m) then
         call take(n_level, m, left, keep, known, rest)
@@ -120,17 +130,17 @@ contains
     end do
   end subroutine take
 
-  !> Size of the elastic strain Be - I.
-  pure function strain(j, ev) result(size)
+  !> Square of the size of the elastic strain Be - I.
+  elemental function strain2(j, ev) result(square)
     !> J.
     real(wp), intent(in) :: j
     !> ev.
     real(wp), intent(in) :: ev
-    !> The size.
-    real(wp) :: size
+    !> The square.
+    real(wp) :: square
 
-    size = 2.0_wp*sqrt(j + ev**2/3.0_wp)
-  end function strain
+    square = 4.0_wp*(j + ev**2/3.0_wp)
+  end function strain2
 
   !> Whether there is so little strain, or shear, that it counts as none.
   pure function faint(j, ev, start)
@@ -138,20 +148,20 @@ contains
     real(wp), intent(in) :: j
     !> ev.
     real(wp), intent(in) :: ev
-    !> Size of the strain of the trial state.
+    !> Square of the size of the strain of the trial state.
     real(wp), intent(in) :: start
     !> Whether it is.
     logical :: faint
 
-    faint = strain(j, ev) < vanished*start .or. &
-            2.0_wp*sqrt(j) <= max(unresolved, slight*strain(j, ev))
+    faint = strain2(j, ev) < vanished**2*start .or. &
+            4.0_wp*j <= max(unresolved**2, slight**2*strain2(j, ev))
   end function faint
 
   !> Bring one state back, in as many pieces as it takes.
   pure subroutine flow_alone(law, start, k, from, i, states, levels, good)
     !> Constants.
     class(breakage_t), intent(in) :: law
-    !> Size of the strain of the trial state.
+    !> Square of the size of the strain of the trial state.
     real(wp), intent(in) :: start
     !> Its row in `from`.
     integer, intent(in) :: k
@@ -176,7 +186,7 @@ contains
       shear = 2.0_wp*sqrt(level(1, of_j))
       if (level(1, of_y) <= tolerance) then
         exit
-      else if (strain(level(1, of_j), level(1, of_ev)) < vanished*start) then
+      else if (strain2(level(1, of_j), level(1, of_ev)) < vanished**2*start) then
         ! Contraction has taken all of the pressure, and with it the strength.
         state(1, :6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
       else if (shear > 0.0_wp .and. faint(level(1, of_j), level(1, of_ev), start)) then
