@@ -12,7 +12,7 @@ module mpm_number_lines
   use mpm_number_text, only: append_integer, append_real, pairs
   implicit none
   private
-  public :: append_integer_lines, append_real_lines, max_entry_length
+  public :: append_integer_lines, append_real_lines, low_byte_first, max_entry_length
 
   !> Most characters that a number and what ends it take, and as many as are written over behind.
   integer, parameter :: max_entry_length = 48
@@ -22,13 +22,13 @@ module mpm_number_lines
   integer, parameter :: least_digits = 8, most_digits = 15
   !> Places that the decimal point is moved to the right, at least and at most.
   integer, parameter :: least_places = -21, most_places = 44
-  !> Whether this machine stores the lowest byte of a number first: eight digits are written so.
+  !> Whether this machine stores the lowest byte of a number first; eight digits are written so.
   logical, parameter :: low_byte_first = iachar(transfer(1_int32, 'a')) == 1
   !> The largest integer of eight digits.
   integer, parameter :: most_in_eight = 99999999
   !> The digit 0 eight times, and what a point is less than it.
   integer(int64), parameter :: zero = int(z'3030303030303030', int64)
-  integer(int64), parameter :: less = int(z'02', int64)
+  integer(int64), parameter :: less = iachar('0') - iachar('.')
   !> `0.000` and `-0.000`.
   character(8), parameter :: signs(0:1) = ['0.000   ', '-0.000  ']
   !> Where a point is that no digit is in front of: behind all that there are.
@@ -94,9 +94,11 @@ contains
     do start = 0, size(numbers) - 1, width
       n = min(width, size(numbers) - start)
       block(:n) = numbers(start + 1:start + n)
-      known%common(:n) = .false.
       if (low_byte_first .and. digits >= least_digits .and. digits <= most_digits) then
         call find_digits(n, block, digits, known)
+      else
+        known%common(:n) = .false.
+        known%missed(:n) = 0.0_wp
       end if
       do i = 1, n
         if (known%common(i) .and. .not. abs(known%missed(i)) > 0.0_wp) then

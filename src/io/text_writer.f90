@@ -6,7 +6,8 @@ module mpm_text_writer
   use mpm_errors, only: err_io, error_t, raise
   use mpm_files, only: delete_file, process_id, reason_against, rename_file
   use mpm_kinds, only: lp, wp
-  use mpm_number_lines, only: append_integer_lines, append_real_lines, max_entry_length
+  use mpm_number_lines, only: append_integer_lines, append_real_lines, low_byte_first, &
+                              max_entry_length
   use mpm_number_text, only: append_integer, append_real, default_digits, max_number_length
   use mpm_strings, only: to_text
   implicit none
@@ -19,8 +20,6 @@ module mpm_text_writer
   integer, parameter :: numbers_at_once = 192
   !> Numbers that are put as bytes at a time.
   integer, parameter :: byte_block = 512
-  !> Whether this machine stores the lowest byte of a number first.
-  logical, parameter :: low_byte_first = iachar(transfer(1_int32, 'a')) == 1
 
   !> A text file on its way.
   !!
